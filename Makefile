@@ -1,0 +1,41 @@
+# Every target sets up what it needs: a virtual environment from constraints.txt, system packages where it may.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: demo test lint bench setup system constraints clean
+
+demo: $(READY)
+	$(BIN)/raycheck demo --out raycheck-demo
+
+test: $(READY) lint
+	$(BIN)/python -P -m pytest -n auto
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: $(READY)
+	$(BIN)/python -P benchmarks/render_speed.py
+	$(BIN)/python -P benchmarks/bit_for_bit.py
+	$(BIN)/python -P benchmarks/suite_overhead.py
+
+setup: $(READY)
+
+$(READY): constraints.txt pyproject.toml tools/system-packages
+	sh tools/system-packages
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -r tools/build-requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt \
+	  --no-build-isolation -e ".[peers,dev]"
+	touch $@
+
+# Pins anew: needs uv. Writes name==version lines only.
+constraints:
+	uv pip compile --quiet --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url \
+	  --no-emit-find-links --extra peers --extra dev pyproject.toml tools/build-requirements.txt -o constraints.txt
+
+clean:
+	rm -rf $(VENV) raycheck-demo raycheck-report examples/*/tracer

@@ -1,0 +1,234 @@
+"""Reading a tracer's image: hostile bytes until proved otherwise.
+
+Order of the checks: a regular file, not through a link, not longer than any lawful encoding of
+the expected size; then the header; then the pixels. Nothing is allocated on a header's word.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import stat
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from oracles.images.picture import ENDINGS, ImageError, Picture, check, check_size
+
+HEADER_ROOM = 2**20
+Size = tuple[int, int]
+
+
+def read(path: Path, width: int, height: int) -> Picture:
+    """The image at `path`, which must be width x height; raise ImageError saying what is wrong."""
+    decode = _DECODERS.get(path.suffix.removeprefix("."))
+    if decode is None:
+        raise ImageError(f"unknown image ending {path.suffix!r}", hint=", ".join("." + e for e in ENDINGS))
+    # The widest lawful encoding is plain PPM: up to 6 characters a value, and a blank
+    data = _read_regular(path, HEADER_ROOM + width * height * 3 * 8)
+    return check(decode(data, (width, height)))
+
+
+def _read_regular(path: Path, limit: int) -> bytes:
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except FileNotFoundError:
+        raise ImageError("no image was written") from None
+    except OSError as error:
+        raise ImageError(f"the image cannot be opened ({error.strerror})", hint="a regular file") from None
+    with os.fdopen(descriptor, "rb") as stream:
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode):
+            raise ImageError("the image is not a regular file")
+        if status.st_size > limit:
+            raise ImageError(f"the file has {status.st_size} bytes", hint=f"at most {limit} for this size")
+        return stream.read(limit)
+
+
+def _pfm(data: bytes, expected: Size) -> Picture:
+    words, offset = _header(data, 4, comments=False)
+    if words[0] != b"PF":
+        raise ImageError(f"not a colour PFM (starts with {words[0]!r})", "the header", "PF")
+    width, height, scale = _integer(words[1]), _integer(words[2]), _real(words[3])
+    check_size(width, height, expected)
+    if scale == 0.0:
+        raise ImageError("PFM scale 0", "the header", "a negative (little-endian) or positive number")
+    pixels = _exactly(data[offset:], width * height * 12)
+    values = np.frombuffer(pixels, dtype="<f4" if scale < 0 else ">f4").reshape(height, width, 3)
+    return Picture(values[::-1].astype(np.float64), roundoff=2.0**-24)
+
+
+def _ppm(data: bytes, expected: Size) -> Picture:
+    words, offset = _header(data, 4, comments=True)
+    if words[0] not in (b"P6", b"P3"):
+        raise ImageError(f"not a colour PPM (starts with {words[0]!r})", "the header", "P6 or P3")
+    width, height, maximum = (_integer(word) for word in words[1:])
+    check_size(width, height, expected)
+    if maximum not in (255, 65535):
+        raise ImageError(f"PPM maximum {maximum}", "the header", "255 or 65535")
+    count = width * height * 3
+    if words[0] == b"P6":
+        depth = "u1" if maximum == 255 else ">u2"
+        codes = np.frombuffer(_exactly(data[offset:], count * np.dtype(depth).itemsize), dtype=depth)
+    else:
+        codes = _plain_codes(data[offset:], count, maximum)
+    return Picture(codes.reshape(height, width, 3).astype(np.float64), maximum)
+
+
+def _plain_codes(data: bytes, count: int, maximum: int) -> Any:
+    words = data.split()
+    if len(words) != count:
+        raise ImageError(f"{len(words)} values", "the pixels", f"{count}")
+    codes = np.array([_integer(word) for word in words], dtype=np.int64)
+    if codes.max(initial=0) > maximum:
+        raise ImageError(f"value {codes.max()}", "the pixels", f"at most {maximum}")
+    return codes
+
+
+def _header(data: bytes, count: int, comments: bool) -> tuple[list[bytes], int]:
+    """The first words of the file and where the pixels begin: one blank after the last word."""
+    words: list[bytes] = []
+    position = 0
+    head = data[:1024]
+    while len(words) < count:
+        while head[position : position + 1].isspace():
+            position += 1
+        if comments and head[position : position + 1] == b"#":
+            position = (head + b"\n").index(b"\n", position)
+            continue
+        end = position
+        while end < len(head) and not head[end : end + 1].isspace():
+            end += 1
+        if end == position or end == len(head):
+            raise ImageError("the header ends early", f"byte {end}", f"{count} words")
+        words.append(head[position:end])
+        position = end
+    return words, position + 1
+
+
+def _exactly(data: bytes, size: int) -> bytes:
+    if len(data) != size:
+        kind = "truncated" if len(data) < size else "too long"
+        raise ImageError(f"{kind}: {len(data)} bytes of pixels", "the end of the file", f"{size}")
+    return data
+
+
+def _integer(word: bytes) -> int:
+    if not word.isdigit() or len(word) > 9:
+        raise ImageError(f"{word[:20]!r} is not a size", "the header", "a positive integer")
+    return int(word)
+
+
+def _real(word: bytes) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise ImageError(f"{word[:20]!r} is not a number", "the header") from None
+
+
+def _npy(data: bytes, expected: Size) -> Picture:
+    stream = io.BytesIO(data)
+    try:
+        version = np.lib.format.read_magic(stream)
+        reader = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, fortran, dtype = reader(stream, max_header_size=4096)
+    except (ValueError, EOFError, SyntaxError, TypeError) as error:
+        raise ImageError(f"not an NPY file ({error})", "the header") from None
+    if dtype not in (np.dtype("<f4"), np.dtype("<f8"), np.dtype(">f4"), np.dtype(">f8")):
+        raise ImageError(f"dtype {dtype}", "the header", "float32 or float64")
+    if len(shape) != 3 or shape[2] != 3:
+        raise ImageError(f"shape {shape}", "the header", "(height, width, 3)")
+    check_size(shape[1], shape[0], expected)
+    pixels = _exactly(data[stream.tell() :], int(np.prod(shape)) * dtype.itemsize)
+    values = np.frombuffer(pixels, dtype=dtype).reshape(shape, order="F" if fortran else "C")
+    return Picture(values.astype(np.float64), roundoff=2.0**-24 if dtype.itemsize == 4 else 0.0)
+
+
+def _exr(data: bytes, expected: Size) -> Picture:
+    import OpenEXR
+
+    try:
+        header = OpenEXR.File(io.BytesIO(data), header_only=True).header()
+        low, high = header["dataWindow"]
+        width, height = int(high[0]) - int(low[0]) + 1, int(high[1]) - int(low[1]) + 1
+        sampled = {channel.name: (channel.xSampling, channel.ySampling) for channel in header["channels"]}
+        kind = header.get("type", OpenEXR.scanlineimage)
+    except (RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
+        raise ImageError(f"not an EXR file ({error})", "the header") from None
+    check_size(width, height, expected)
+    missing = [name for name in "RGB" if name not in sampled]
+    if missing:
+        raise ImageError(f"channel {missing[0]} is missing (has {', '.join(sampled) or 'none'})", "the header", "R G B")
+    if kind not in (OpenEXR.scanlineimage, OpenEXR.tiledimage) or any(sampled[c] != (1, 1) for c in "RGB"):
+        raise ImageError("deep or subsampled EXR", "the header", "full-resolution scanlines or tiles")
+    if len(sampled) > 16:
+        raise ImageError(f"{len(sampled)} channels", "the header", "R G B")
+    try:
+        channels = OpenEXR.File(io.BytesIO(data), separate_channels=True).channels()
+        planes = [np.asarray(channels[name].pixels) for name in "RGB"]
+    except (RuntimeError, ValueError, KeyError) as error:
+        raise ImageError(f"truncated or damaged EXR ({error})", "the pixels") from None
+    if any(plane.shape != (height, width) or plane.dtype.kind != "f" for plane in planes):
+        raise ImageError("EXR channels of another size or kind", "the pixels", "half or float")
+    roundoff = max(2.0**-11 if plane.dtype == np.float16 else 2.0**-24 for plane in planes)
+    return Picture(np.stack(planes, axis=-1).astype(np.float64), roundoff=roundoff)
+
+
+def _png(data: bytes, expected: Size) -> Picture:
+    import png
+
+    depth, channels = _png_size(data, expected)
+    width, height = expected
+    try:
+        _, _, rows, _ = png.Reader(bytes=data).read()
+        codes = np.vstack([np.asarray(row, dtype=np.int64) for row in rows])
+    except (png.Error, ValueError, zlib.error, EOFError) as error:
+        raise ImageError(f"damaged PNG ({error})", "the pixels") from None
+    if codes.shape != (height, width * channels):
+        raise ImageError("PNG rows of another size", "the pixels")
+    values = codes.reshape(height, width, channels)[:, :, :3]
+    return Picture(values.astype(np.float64), 2**depth - 1)
+
+
+def _png_size(data: bytes, expected: Size) -> tuple[int, int]:
+    """Bit depth and channels, after proving that the pixels unpack to just the expected size."""
+    if data[:8] != b"\x89PNG\r\n\x1a\n" or data[12:16] != b"IHDR" or len(data) < 33:
+        raise ImageError("not a PNG file", "the header")
+    width, height = int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+    depth, colour, interlaced = data[24], data[25], data[28]
+    check_size(width, height, expected)
+    if colour not in (2, 6) or depth not in (8, 16) or interlaced:
+        kind = f"colour type {colour}, {depth} bit{', interlaced' if interlaced else ''}"
+        raise ImageError(f"PNG of {kind}", "the header", "RGB or RGBA of 8 or 16 bit, not interlaced")
+    channels = 3 if colour == 2 else 4
+    size = height * (1 + width * channels * depth // 8)
+    try:
+        unpacked = zlib.decompressobj().decompress(b"".join(_png_data(data)), size + 1)
+    except zlib.error as error:
+        raise ImageError(f"damaged PNG ({error})", "the pixels") from None
+    _exactly(unpacked, size)
+    return depth, channels
+
+
+def _png_data(data: bytes) -> Iterator[bytes]:
+    position = 8
+    while position + 12 <= len(data):
+        size = int.from_bytes(data[position : position + 4], "big")
+        kind = data[position + 4 : position + 8]
+        if kind == b"IDAT":
+            yield data[position + 8 : position + 8 + size]
+        elif kind in (b"PLTE", b"tRNS", b"zTXt", b"iTXt", b"iCCP") and size > HEADER_ROOM:
+            raise ImageError(f"PNG chunk {kind!r} of {size} bytes")
+        position += 12 + size
+
+
+_DECODERS: dict[str, Callable[[bytes, Size], Picture]] = {
+    "pfm": _pfm,
+    "ppm": _ppm,
+    "npy": _npy,
+    "exr": _exr,
+    "png": _png,
+}

@@ -1,0 +1,103 @@
+"""A verdict: what was asked, what came back, how far off it may be, how to ask again.
+
+These models are also the form in which verdicts are stored; their JSON Schema
+ships with the reports.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Word = Literal[
+    "pass",  # inside its bound everywhere
+    "fail",  # outside it somewhere
+    "undecided",  # the case cannot tell at this precision
+    "unsupported",  # the tracer says it lacks a feature
+    "blocked",  # what it builds on failed
+    "invalid",  # no usable answer
+    "crash",  # the process died by a signal
+    "timeout",  # no answer in time
+    "error",  # the tracer said so
+    "known",  # fails, and is listed as known
+    "fixed",  # passes, although listed as known
+]
+
+CONFORMING: frozenset[str] = frozenset({"pass", "undecided", "unsupported", "known"})
+"""Words that leave a tracer conforming."""
+
+USABLE: frozenset[str] = frozenset({"pass", "undecided", "known", "fixed"})
+"""Words of a rung on which later rungs may build."""
+
+
+class Frozen(BaseModel):
+    """Base of everything stored: no unknown keys, no mutation."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, ser_json_inf_nan="strings")
+
+
+class Pixel(Frozen):
+    """One value of one pixel; `excess` is its distance in tolerances (inf for tolerance 0)."""
+
+    i: int
+    j: int
+    channel: Literal["red", "green", "blue"]
+    expected: float
+    tolerance: float
+    got: float
+    excess: float
+    unit: Literal["linear", "code"] = "linear"
+
+
+class Judged(Frozen):
+    """An image against its truth.
+
+    outside: pixels with a value outside its bound; doubtful: pixels on which a decision cannot be
+    made at the tracer's precision, by kind of decision; they are judged by the hull of what they
+    may be. tolerance_*: quantiles of the largest tolerance of each pixel: what the scene can see.
+    """
+
+    pixels: int
+    outside: int
+    doubtful: dict[str, int] = Field(default_factory=dict)
+    decided: int
+    tolerance_median: float
+    tolerance_99: float
+    tolerance_worst: float
+    worst: Pixel | None = None
+
+
+class Process(Frozen):
+    """What a tracer's process did."""
+
+    command: tuple[str, ...]
+    status: str
+    seconds: float
+    output_tail: str = ""
+
+
+class Pictures(Frozen):
+    """PNG files beside the results, by path relative to them."""
+
+    expected: str | None = None
+    got: str | None = None
+    difference: str | None = None
+
+
+class Verdict(Frozen):
+    """One check of one subject."""
+
+    check: str
+    verdict: Word
+    message: str
+    slide: str = ""
+    teaches: str = ""
+    formula: str = ""
+    requires: tuple[str, ...] = ()
+    blocked_by: str | None = None
+    reproduce: str = ""
+    judged: Judged | None = None
+    process: Process | None = None
+    pictures: Pictures = Pictures()
+    seconds: float = 0.0

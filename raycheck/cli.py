@@ -1,0 +1,139 @@
+"""The command line. Imports nothing heavy until a command runs, so that --help is immediate."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from raycheck import VERSION
+from raycheck.errors import BROKEN, INTERRUPTED, MISUSE, RaycheckError
+
+EXIT_CODES = """exit codes: 0 conforms, 1 does not conform, 2 the call, scene or manifest is wrong,
+3 the tracer could not be started, 4 the suite itself failed, 130 interrupted"""
+
+SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]], images:DIR
+(one image a scene), python:module:attr (trusted code), or nothing and the tracer's command after --:
+  raycheck check -- ./tracer {scene} {image}"""
+
+
+class Parser(argparse.ArgumentParser):
+    """Errors in one line, exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(MISUSE, f"raycheck: {message} (see {self.prog} --help)\n")
+
+
+def parser() -> Parser:
+    """All commands and their arguments."""
+    top = Parser(prog="raycheck", description="Validation and test oracles for ray tracers.", epilog=EXIT_CODES)
+    top.add_argument("--version", action="version", version=f"raycheck {VERSION}")
+    commands = top.add_subparsers(dest="run", metavar="COMMAND", required=True)
+
+    demo = _add(commands, "demo", "check a good and a deliberately wrong example tracer, and write both reports")
+    demo.add_argument("--out", default="raycheck-demo", metavar="DIR", help="where the reports go (%(default)s)")
+
+    check = _add(commands, "check", "run the conformance suite against a tracer", SUBJECT)
+    _subject(check)
+    check.add_argument("--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes)")
+    check.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own")
+    check.add_argument("--out", default="raycheck-report", metavar="DIR", help="where the report goes (%(default)s)")
+    check.add_argument("--seed", type=int, default=0, metavar="N", help="handed to the tracer as {seed} (%(default)s)")
+    check.add_argument("--known", metavar="FILE", help="TOML list of known failures: [[known]] check, reason, url")
+    check.add_argument("--no-block", action="store_true", help="ask every rung, even where one it builds on failed")
+
+    smoke = _add(
+        commands, "smoke", "one small scene, with everything sent and received: why does my adapter fail?", SUBJECT
+    )
+    _subject(smoke)
+
+    render = _add(commands, "render", "render a scene with the reference tracer")
+    render.add_argument("scene", metavar="SCENE", help="a scene file (.json, .txt) or a name of the catalogue")
+    render.add_argument("image", metavar="IMAGE", help="where to; its ending says how: .exr .pfm .ppm .png .npy")
+    render.add_argument("--arithmetic", choices=("plain", "numpy", "drjit"), help="default: the fastest there is")
+    render.add_argument("--precision", type=int, choices=(32, 64), default=64, help="bits (%(default)s)")
+    render.add_argument("--size", metavar="WxH", help="picture size instead of the scene's own")
+    render.add_argument("--depth", type=int, metavar="N", help="generations after the eye ray, 0 to 16")
+
+    scenes = _add(commands, "scenes", "list the catalogue, or print one scene")
+    scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
+    scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")
+
+    report = _add(commands, "report", "write a report again from its results")
+    report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")
+
+    _add(commands, "doctor", "what is installed, what is missing, and the command that adds it")
+    return top
+
+
+def _add(commands: argparse._SubParsersAction[Parser], name: str, what: str, more: str = "") -> Parser:
+    return commands.add_parser(
+        name,
+        help=what,
+        description=f"{what[0].upper()}{what[1:]}.",
+        epilog=f"{more}\n\n{EXIT_CODES}".strip(),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def _subject(command: Parser) -> None:
+    command.add_argument("subject", nargs="?", metavar="SUBJECT", help="the tracer, see below")
+    command.add_argument("--scene", choices=("text", "json"), default="text", help="scene notation of a -- COMMAND")
+    command.add_argument(
+        "--image", choices=("pfm", "exr", "npy", "ppm", "png"), default="pfm", help="image ending of a -- COMMAND"
+    )
+    command.add_argument(
+        "--precision",
+        choices=("float32", "float64"),
+        default="float32",
+        help="what a -- COMMAND, images or a Python object compute in: tolerances follow from it (%(default)s)",
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; return its exit code."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    tracer: list[str] | None = None
+    if "--" in words:
+        at = words.index("--")
+        words, tracer = words[:at], words[at + 1 :]
+    options = parser().parse_args(words)
+    options.tracer = tracer
+    options.words = words
+    try:
+        command = importlib.import_module(f"raycheck.commands.{options.run}")
+        code: int = command.run(options)
+        sys.stdout.flush()
+        return code
+    except RaycheckError as error:
+        print(f"raycheck: {error}", file=sys.stderr)
+        return error.code
+    except KeyboardInterrupt:
+        print("raycheck: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 0
+    except Exception as error:
+        return _broken(error)
+
+
+def _broken(error: Exception) -> int:
+    """An error that no one foresaw is a bug of ours, and said to be one."""
+    from scenes.errors import SceneError
+
+    if isinstance(error, SceneError):
+        print(f"raycheck: {error}", file=sys.stderr)
+        return MISUSE
+    import traceback
+
+    traceback.print_exc()
+    print(f"raycheck: the suite itself failed ({type(error).__name__}); this is a bug of raycheck", file=sys.stderr)
+    return BROKEN
+
+
+def entry() -> NoReturn:
+    """The console script."""
+    raise SystemExit(main())

@@ -1,0 +1,49 @@
+"""raycheck demo: the main job on what is bundled."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+
+from raycheck import session
+from raycheck.errors import BROKEN, CONFORMS, DIFFERS, StartError
+from raycheck.known import Known
+from raycheck.subjects import attach
+
+EXAMPLES = (("cpp_lecture", CONFORMS), ("cpp_slides", DIFFERS))
+"""The good tracer and the wrong one, with the exit code each deserves."""
+
+
+def run(options: Namespace) -> int:
+    """Check both examples; 0 if each is judged as it deserves."""
+    out = Path(options.out)
+    deserved = True
+    for name, expected in EXAMPLES:
+        folder = examples() / name
+        order = session.Order(
+            subject=attach(str(folder)),
+            scenes=None,
+            size=None,
+            out=out / name,
+            seed=0,
+            block=False,  # so that every slip of the wrong one shows
+            known=Known({}),
+            command="raycheck demo",
+            repeat=f"raycheck check {folder} --scenes {{scene}}",
+        )
+        found, code = session.check(order)
+        session.tell(found, order.out)
+        print()
+        if code not in (CONFORMS, DIFFERS):
+            return code
+        deserved &= code == expected
+    return CONFORMS if deserved else BROKEN
+
+
+def examples() -> Path:
+    """The folder of example tracers: in the package, or beside it in a checkout."""
+    here = Path(__file__).resolve().parents[1]
+    for folder in (here / "examples", here.parent / "examples"):
+        if folder.is_dir():
+            return folder
+    raise StartError("the example tracers are not installed", "install raycheck from its wheel or a checkout")

@@ -1,0 +1,53 @@
+"""What several commands read from their options."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from argparse import Namespace
+from pathlib import Path
+
+from raycheck.errors import UsageError
+from raycheck.subjects import Subject, attach, attach_command
+from scenes.catalogue import rung
+from scenes.files import load
+from scenes.model import MAX_SIDE, Scene
+
+
+def subject_of(options: Namespace) -> Subject:
+    """The tracer: SUBJECT, or the command after --; just one of them."""
+    if options.tracer is not None and options.subject is not None:
+        raise UsageError(f"both {options.subject!r} and a command after -- are given", "one tracer")
+    if options.tracer is None and options.subject is None:
+        raise UsageError("no tracer is given", "a SUBJECT, or a command after --")
+    if options.subject is not None:
+        return attach(options.subject, options.precision)
+    if not options.tracer:
+        raise UsageError("no command follows --", "for example -- ./tracer {scene} {image}")
+    return attach_command(options.tracer, options.scene, options.image, options.precision)
+
+
+def command_line(options: Namespace) -> str:
+    """The call as it can be typed again."""
+    tail = ["--", *options.tracer] if options.tracer is not None else []
+    return shlex.join(["raycheck", *options.words, *tail])
+
+
+def size_of(text: str | None) -> tuple[int, int] | None:
+    """(width, height) of WxH."""
+    if text is None:
+        return None
+    found = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text)
+    if found is None:
+        raise UsageError(f"--size {text}: not a size", "WxH, for example 320x240")
+    width, height = int(found[1]), int(found[2])
+    if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE):
+        raise UsageError(f"--size {text}: out of range", f"sides from 1 to {MAX_SIDE}")
+    return width, height
+
+
+def scene_of(name: str) -> Scene:
+    """A scene by file, or by name in the catalogue."""
+    if name.endswith((".json", ".txt")) or "/" in name:
+        return load(Path(name))
+    return rung(name).scene()

@@ -1,0 +1,72 @@
+"""Known failures: listed with a reason, held to it, and reported as soon as they are fixed."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from oracles.verdict import Verdict
+from raycheck.errors import UsageError
+
+MAX_BYTES = 2**20
+
+
+class Entry(BaseModel):
+    """One line of the file: the check, why it fails, where that is discussed."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    check: str
+    reason: str
+    url: str
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    known: tuple[Entry, ...] = ()
+
+
+@dataclass(frozen=True)
+class Known:
+    """The entries by check."""
+
+    entries: dict[str, Entry]
+
+    def apply(self, verdict: Verdict) -> Verdict:
+        """A listed failure is `known`; a listed pass is `fixed`, until its line is removed."""
+        entry = self.entries.get(verdict.check)
+        if entry is None:
+            return verdict
+        if verdict.verdict == "pass":
+            message = f"passes, although listed as known ({entry.reason}); remove its line"
+            return verdict.model_copy(update={"verdict": "fixed", "message": message})
+        if verdict.verdict in ("fail", "invalid", "crash", "timeout", "error"):
+            message = f"known: {entry.reason} ({entry.url}); {verdict.message}"
+            return verdict.model_copy(update={"verdict": "known", "message": message})
+        return verdict
+
+
+def load(path: Path | None, checks: set[str]) -> Known:
+    """Read a known-failures file; every entry must name a check of the suite."""
+    if path is None:
+        return Known({})
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+        entries = _File.model_validate(tomllib.loads(data.decode("utf-8"))).known
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}", "a TOML file of [[known]] entries") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: not TOML: {error}") from None
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise UsageError(f"{path}: {place}: {first['msg']}", "[[known]] with check, reason and url") from None
+    for entry in entries:
+        if entry.check not in checks:
+            raise UsageError(f"{path}: no check is called {entry.check!r}", "names as in the report: image/SCENE")
+    return Known({entry.check: entry for entry in entries})

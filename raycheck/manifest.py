@@ -1,0 +1,71 @@
+"""raycheck.toml: how a tracer is built, called, and what it promises."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from raycheck.errors import UsageError
+
+FILE = "raycheck.toml"
+MAX_BYTES = 2**16
+Words = Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+FEATURES = ("plane", "shadow", "reflect", "refract", "fresnel")
+
+
+class Frozen(BaseModel):
+    """Base: no unknown keys, no mutation."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Manifest(Frozen):
+    """The [tracer] table."""
+
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    build: Words | None = None
+    render: Words
+    scene: Literal["text", "json"] = "text"
+    image: Literal["pfm", "exr", "npy", "ppm", "png"] = "pfm"
+    precision: Literal["float32", "float64"] = "float32"
+    features: tuple[Literal["plane", "shadow", "reflect", "refract", "fresnel"], ...] | None = None
+    timeout: Annotated[float, Field(gt=0, le=3600)] = 30.0
+
+
+class _File(Frozen):
+    tracer: Manifest
+
+
+def load(folder: Path) -> Manifest:
+    """Read and validate a tracer's manifest; raise UsageError naming file, key and value."""
+    path = folder / FILE
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        hint = "a tracer's folder holds a raycheck.toml, or give its command after --"
+        raise UsageError(f"{path}: {error.strerror}", hint) from None
+    if len(data) > MAX_BYTES:
+        raise UsageError(f"{path}: over {MAX_BYTES} bytes", "a manifest of a few lines")
+    try:
+        return _File.model_validate(tomllib.loads(data.decode("utf-8"))).tracer
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: not TOML: {error}") from None
+    except ValidationError as error:
+        raise UsageError(f"{path}: {_explain(error)}") from None
+
+
+def _explain(error: ValidationError) -> str:
+    first = error.errors(include_url=False)[0]
+    key = ".".join(str(part) for part in first["loc"])
+    match first["type"]:
+        case "missing":
+            example = ': for example render = ["./tracer", "{scene}", "{image}"]' if key.endswith("render") else ""
+            return f"key {key} is missing{example}"
+        case "extra_forbidden":
+            return f"unknown key {key}; known are {', '.join(Manifest.model_fields)}"
+        case _:
+            return f"{key} = {first['input']!r:.60}: {first['msg']}"

@@ -1,0 +1,159 @@
+"""Running a stranger's program: bounded in time, output and files, and gone afterwards.
+
+Each run is a process group of its own. Time and output are watched from outside; whatever happens,
+the group is killed before `run` returns. (A program that leaves its group survives this; only the
+sandbox holds it.)
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import resource
+import selectors
+import signal
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+OUTPUT_LIMIT = 16 * 2**20
+"""Bytes a tracer may print in all before it is stopped."""
+TAIL = 4000
+"""Characters of output kept for the report."""
+GRACE = 0.5
+"""Seconds to read on after the program has ended, in case a child of it still holds the pipe."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a run ended.
+
+    how: exited | signal | timeout | flood; code: exit status or signal number; tail: the end of
+    stdout and stderr together, as text without control characters.
+    """
+
+    how: str
+    code: int
+    seconds: float
+    tail: str
+
+    @property
+    def status(self) -> str:
+        """In words, signals by name."""
+        match self.how:
+            case "signal":
+                return f"killed by {signal_name(self.code)}"
+            case "timeout":
+                return "stopped: out of time"
+            case "flood":
+                return "stopped: too much output"
+            case _:
+                return f"exit status {self.code}"
+
+
+def signal_name(number: int) -> str:
+    """SIGSEGV for 11."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
+
+
+def run(
+    command: Sequence[str], cwd: Path, timeout: float, file_limit: int, environment: Mapping[str, str] | None = None
+) -> Ended:
+    """Run a command (never through a shell) to its end or its bounds; raise OSError if it cannot start."""
+    begin = time.monotonic()
+    child = subprocess.Popen(
+        list(command),
+        cwd=cwd,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+        env=dict(environment or own_environment()),
+    )
+    try:
+        _limit(child.pid, file_limit)
+        how, tail = _watch(child, begin + timeout)
+    finally:
+        _kill(child)
+    seconds = time.monotonic() - begin
+    code = child.returncode
+    if how == "ended":
+        how = "signal" if code < 0 else "exited"
+    return Ended(how, abs(code), seconds, clean(tail))
+
+
+def own_environment() -> dict[str, str]:
+    """What a tracer needs of ours: where programs and libraries are, and the language."""
+    keep = ("PATH", "HOME", "LANG", "LC_ALL", "TMPDIR", "LD_LIBRARY_PATH", "JAVA_HOME", "GOPATH", "CARGO_HOME")
+    return {name: os.environ[name] for name in keep if name in os.environ}
+
+
+def _limit(pid: int, file_limit: int) -> None:
+    """No core dumps, no larger file than an image of the format can be."""
+    with contextlib.suppress(OSError, AttributeError):  # it may have ended already; not all systems have prlimit
+        resource.prlimit(pid, resource.RLIMIT_CORE, (0, 0))
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (file_limit, file_limit))
+
+
+def _watch(child: subprocess.Popen[bytes], deadline: float) -> tuple[str, bytes]:
+    """Read until the end of the output, the deadline or the limit; how it went, and the tail."""
+    assert child.stdout is not None
+    descriptor = child.stdout.fileno()
+    os.set_blocking(descriptor, False)
+    seen, tail = 0, b""
+    ended: float | None = None
+    with selectors.DefaultSelector() as selector:
+        selector.register(descriptor, selectors.EVENT_READ)
+        while True:
+            now = time.monotonic()
+            if child.poll() is not None and ended is None:
+                ended = now
+            if ended is not None and now > ended + GRACE:
+                return "ended", tail
+            if now > deadline and ended is None:
+                return "timeout", tail
+            if not selector.select(timeout=min(0.05, max(0.0, deadline - now))):
+                if ended is not None:
+                    return "ended", tail
+                continue
+            chunk = os.read(descriptor, 65536)
+            if not chunk:
+                return _wait(child, deadline), tail
+            seen += len(chunk)
+            tail = (tail + chunk)[-4 * TAIL :]
+            if seen > OUTPUT_LIMIT:
+                return "flood", tail
+
+
+def _wait(child: subprocess.Popen[bytes], deadline: float) -> str:
+    """The output is closed: wait for the program itself."""
+    try:
+        child.wait(timeout=max(0.0, deadline - time.monotonic()))
+    except subprocess.TimeoutExpired:
+        return "timeout"
+    return "ended"
+
+
+def _kill(child: subprocess.Popen[bytes]) -> None:
+    """End the whole group, and collect the child."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(child.pid, signal.SIGKILL)
+    child.wait()
+    if child.stdout is not None:
+        child.stdout.close()
+
+
+_ESCAPES = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(\x07|\x1b\\)?|.)?", re.DOTALL)
+
+
+def clean(output: bytes) -> str:
+    """Output as harmless text: no escapes, no control characters but newline and tab, the last TAIL characters."""
+    text = _ESCAPES.sub("", output.decode("utf-8", "replace"))
+    text = "".join(c for c in text if c in "\n\t" or c.isprintable())
+    return text[-TAIL:].strip()

@@ -1,0 +1,118 @@
+"""One check from the command line to the report: nothing is lost on the way."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from oracles.verdict import Verdict
+from raycheck import VERSION
+from raycheck.errors import CONFORMS, DIFFERS, INTERRUPTED, UsageError
+from raycheck.known import Known
+from raycheck.machine import machine
+from raycheck.progress import Progress
+from raycheck.subjects import Subject
+from raycheck.suite import Plan, judge
+from reports import junit, page, results, summary
+from scenes.catalogue import Rung, catalogue_hash, ladder, rung
+
+
+@dataclass(frozen=True)
+class Order:
+    """What the user wants checked."""
+
+    subject: Subject
+    scenes: Sequence[str] | None
+    size: tuple[int, int] | None
+    out: Path
+    seed: int
+    block: bool
+    known: Known
+    command: str
+    repeat: str
+
+
+def check(order: Order) -> tuple[results.Results, int]:
+    """Run the suite, write the report, return the results and the exit code."""
+    begin = time.monotonic()
+    started = datetime.now(UTC).isoformat(timespec="seconds")
+    make_folder(order.out)
+    order.subject.prepare()
+    plan = Plan(chosen(order.scenes), order.size, order.seed, order.block, order.known, order.repeat)
+    verdicts: list[Verdict] = []
+    complete = False
+    progress = Progress(f"checking {order.subject.name}", len(plan.rungs))
+    try:
+        for verdict in judge(order.subject, plan, order.out):
+            verdicts.append(verdict)
+            progress.step(verdict.check)
+        complete = True
+    except KeyboardInterrupt:
+        print("\ninterrupted: writing what there is", file=sys.stderr)
+    finally:
+        progress.close()
+    found = results.Results(
+        suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
+        subject=_described(order.subject),
+        machine=machine(),
+        started=started,
+        command=order.command,
+        seed=order.seed,
+        size=f"{order.size[0]}x{order.size[1]}" if order.size else None,
+        seconds=time.monotonic() - begin,
+        planned=len(plan.rungs),
+        verdicts=tuple(verdicts),
+        complete=complete,
+    )
+    write(found, order.out)
+    if not complete:
+        return found, INTERRUPTED
+    return found, CONFORMS if found.conforms else DIFFERS
+
+
+def write(found: results.Results, folder: Path) -> Path:
+    """results.json first, then what is made from it; return the page's path."""
+    results.write(found, folder)
+    junit.write(found, folder)
+    return page.write(found, folder)
+
+
+def tell(found: results.Results, folder: Path) -> None:
+    """The summary on stdout."""
+    for line in summary.lines(found):
+        print(line)
+    print(f"report: {folder / 'index.html'}")
+
+
+def chosen(names: Sequence[str] | None) -> list[Rung]:
+    """The rungs of these names in the ladder's order; all without names."""
+    if names is None:
+        return list(ladder())
+    wanted = {rung(name).name for name in names}
+    return [entry for entry in ladder() if entry.name in wanted]
+
+
+def make_folder(folder: Path) -> None:
+    """Create the report's folder; raise UsageError if that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".raycheck-probe"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise UsageError(f"{folder}: {error.strerror}", "a folder that can be written, with --out DIR") from None
+
+
+def _described(subject: Subject) -> results.Subject:
+    return results.Subject(
+        name=subject.name,
+        spec=subject.spec,
+        precision=subject.precision,
+        scene=subject.scene_form,
+        image=subject.image_form,
+        features=subject.features,
+    )

@@ -1,0 +1,48 @@
+"""From what the user typed to a subject."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from raycheck import manifest
+from raycheck.errors import UsageError
+from raycheck.manifest import Manifest
+from raycheck.subjects.command import CommandSubject
+from raycheck.subjects.images import ImagesSubject
+from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
+from raycheck.subjects.subject import Subject
+
+FORMS = "a folder with raycheck.toml, builtin:reference, images:DIR, python:module:attr, or -- COMMAND"
+
+
+def attach(spec: str, precision: str = "float32") -> Subject:
+    """The subject of a SUBJECT argument; `precision` is that of images and Python objects."""
+    kind, _, rest = spec.partition(":")
+    match kind:
+        case "builtin" if rest.split("/")[0] == "reference":
+            return ReferenceSubject(rest)
+        case "builtin":
+            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference")
+        case "images":
+            return ImagesSubject(Path(rest), precision)
+        case "python" if rest.count(":") == 1:
+            module, attribute = rest.split(":")
+            return PythonSubject(module, attribute, precision)
+        case "python":
+            raise UsageError(f"{spec}: not a Python object", "python:module:attr")
+    folder = Path(spec)
+    if not folder.is_dir():
+        raise UsageError(f"{spec}: no such folder", FORMS)
+    return CommandSubject(folder.resolve(), manifest.load(folder), spec)
+
+
+def attach_command(words: list[str], scene: str, image: str, precision: str) -> Subject:
+    """A tracer given as its command line, without a manifest."""
+    name = Path(words[0]).name
+    return CommandSubject(
+        Path.cwd(),
+        Manifest.model_validate(
+            {"name": name, "render": tuple(words), "scene": scene, "image": image, "precision": precision}
+        ),
+        spec="",
+    )

@@ -1,0 +1,1 @@
+"""The lecture's tracer: formulas once, numbers many; plain recursion and wavefront."""

@@ -1,0 +1,49 @@
+"""Light at a surface point."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference_tracer.numbers import Condition, Number, clamp0, less, power, select
+from reference_tracer.vector import Vec, dot, length, unit
+
+
+def light_vector(k: Vec, p: Vec, is_point: Condition) -> tuple[Vec, Number]:
+    """Unit vector i from p to the light, and the distance to it (infinite for a directional light).
+
+    L11 "How to Calculate the Distance to Point Lights": i = k - p, made unit (the slide leaves
+    that out). For a directional light k is the direction itself.
+    """
+    w = Vec(select(is_point, k.x - p.x, k.x), select(is_point, k.y - p.y, k.y), select(is_point, k.z - p.z, k.z))
+    return unit(w), select(is_point, length(w), float("inf"))
+
+
+def attenuation(distance: Number, is_inverse: Condition, is_inverse_square: Condition) -> Number:
+    """Factor on a light's colour: 1, 1/d or 1/d².
+
+    L11 "Light Position": α = func(distance); "three features": inverse proportional to the
+    distance. The scene decides which.
+    """
+    d = select(is_inverse | is_inverse_square, distance, 1.0)
+    return 1.0 / select(is_inverse_square, d * d, d)
+
+
+def lambert(i: Vec, n: Vec) -> Number:
+    """cosθ = i∘n, 0 for a light behind the surface. L11 "Lambertian Reflection Model"."""
+    return clamp0(dot(i, n))
+
+
+def phong(i: Vec, n: Vec, v: Vec, s: Any, mirrored: Vec) -> Number:
+    """Specular factor (r∘(-v))^s, 0 where the light is behind the surface or the product is negative.
+
+    L11 "Phong Effect": S(α) = (r∘v)^s with r the light's mirror direction and v pointing to the
+    eye, which is minus our travelling ray.
+    """
+    gloss = power(clamp0(-dot(mirrored, v)), s)
+    return select(less(0.0, dot(i, n)), gloss, 0.0)
+
+
+def direct_light(colour: Vec, factor: Number, diffuse: Vec, cosine: Number, specular: Vec, gloss: Number) -> Vec:
+    """One light's share: α · colour · (diffuse·cosθ + specular·gloss). L11 "Phong's effect Result"."""
+    share: Vec = (colour * factor) * (diffuse * cosine + specular * gloss)
+    return share

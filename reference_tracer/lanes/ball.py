@@ -1,0 +1,236 @@
+"""Balls: a value with a radius that a tracer of unit roundoff u cannot leave.
+
+Every operation propagates the radii of its arguments and adds u·|result| for its
+own rounding, so a ball holds each result that any evaluation with relative
+error u an operation may give. The midpoint is computed by the same operations
+as the plain lanes, so it is their result, bit for bit.
+
+An undecided comparison is a `Doubtful`: its value is the branch the midpoint
+takes, `sure` says where the other branch is impossible. `select` on it returns
+the hull of both branches; a bool context raises.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference_tracer import numbers
+
+
+class Doubtful:
+    """A condition per lane: what the midpoints say, and where that is certain."""
+
+    __slots__ = ("sure", "value")
+    __array_ufunc__ = None  # NumPy leaves the operators to this class
+
+    def __init__(self, value: Any, sure: Any) -> None:
+        self.value = value
+        self.sure = sure
+
+    @property
+    def parts(self) -> tuple[Any, Any]:
+        return (self.value, self.sure)
+
+    def with_parts(self, parts: tuple[Any, Any]) -> Doubtful:
+        return Doubtful(*parts)
+
+    def __bool__(self) -> bool:
+        raise TypeError("an undecided comparison has no truth value; use select")
+
+    def __and__(self, other: Any) -> Doubtful:
+        if not isinstance(other, Doubtful):
+            return Doubtful(self.value & other, self.sure | ~other)
+        surely_false = (self.sure & ~self.value) | (other.sure & ~other.value)
+        return Doubtful(self.value & other.value, (self.sure & other.sure) | surely_false)
+
+    def __or__(self, other: Any) -> Doubtful:
+        if not isinstance(other, Doubtful):
+            return Doubtful(self.value | other, self.sure | other)
+        surely_true = (self.sure & self.value) | (other.sure & other.value)
+        return Doubtful(self.value | other.value, (self.sure & other.sure) | surely_true)
+
+    __rand__ = __and__
+    __ror__ = __or__
+
+    @property
+    def possible(self) -> Any:
+        """Where the condition may hold."""
+        return self.value | ~self.sure
+
+
+class Ball:
+    """mid ± rad at unit roundoff u."""
+
+    __slots__ = ("mid", "rad", "u")
+    __array_ufunc__ = None
+
+    def __init__(self, mid: Any, rad: Any, u: Any) -> None:
+        self.mid = mid
+        self.rad = rad
+        self.u = u
+
+    @property
+    def parts(self) -> tuple[Any, Any]:
+        return (self.mid, self.rad)
+
+    def with_parts(self, parts: tuple[Any, Any]) -> Ball:
+        return Ball(*parts, self.u)
+
+    def _other(self, other: Any) -> Ball:
+        return other if isinstance(other, Ball) else Ball(other, 0.0, self.u)
+
+    def _rounded(self, mid: Any, rad: Any) -> Ball:
+        return Ball(mid, rad + _abs(mid) * self.u, self.u)
+
+    def __neg__(self) -> Ball:
+        return Ball(-self.mid, self.rad, self.u)
+
+    def __add__(self, other: Any) -> Ball:
+        b = self._other(other)
+        return self._rounded(self.mid + b.mid, self.rad + b.rad)
+
+    def __sub__(self, other: Any) -> Ball:
+        b = self._other(other)
+        return self._rounded(self.mid - b.mid, self.rad + b.rad)
+
+    def __rsub__(self, other: Any) -> Ball:
+        return self._other(other) - self
+
+    def __mul__(self, other: Any) -> Ball:
+        if isinstance(other, float):  # an exact factor of the formulas: 2, 0.5
+            return self._rounded(self.mid * other, self.rad * abs(other))
+        b = self._other(other)
+        return self._rounded(self.mid * b.mid, _abs(self.mid) * b.rad + self.rad * (_abs(b.mid) + b.rad))
+
+    def __truediv__(self, other: Any) -> Ball:
+        # |x/y - X/Y| <= (rx + |x/y| ry) / (|y| - ry), unbounded where Y may be 0
+        b = self._other(other)
+        mid = self.mid / b.mid
+        room = _abs(b.mid) - b.rad
+        reach = (self.rad + _abs(mid) * b.rad) / numbers.select(room > 0.0, room, 1.0)
+        return self._rounded(mid, numbers.select(room > 0.0, reach, INFINITY))
+
+    def __rtruediv__(self, other: Any) -> Ball:
+        return self._other(other) / self
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+    @property
+    def lower(self) -> Any:
+        return self.mid - self.rad
+
+    @property
+    def upper(self) -> Any:
+        return self.mid + self.rad
+
+
+INFINITY = float("inf")
+
+
+def _abs(x: Any) -> Any:
+    return abs(x) if isinstance(x, float) else numbers.select(x < 0.0, -x, x)
+
+
+def _max(a: Any, b: Any) -> Any:
+    return numbers.select(a > b, a, b)
+
+
+class BallOperations:
+    """Formulas on balls."""
+
+    rank = 3
+
+    def _pair(self, a: Any, b: Any) -> tuple[Ball, Ball]:
+        u = a.u if isinstance(a, Ball) else b.u
+        return tuple(x if isinstance(x, Ball) else Ball(x, 0.0, u) for x in (a, b))  # type: ignore[return-value]
+
+    def _compared(self, a: Any, b: Any, value: Any) -> Doubtful:
+        # Certain when the balls are apart; also when both are points, so that a tie of exact
+        # values (a ray exactly parallel to a plane) is decided.
+        gap, reach = a.mid - b.mid, a.rad + b.rad
+        return Doubtful(value, (_abs(gap) > reach) | (reach == 0.0))
+
+    def less(self, a: Any, b: Any) -> Doubtful:
+        a, b = self._pair(a, b)
+        return self._compared(a, b, a.mid < b.mid)
+
+    def at_least(self, a: Any, b: Any) -> Doubtful:
+        a, b = self._pair(a, b)
+        return self._compared(a, b, a.mid >= b.mid)
+
+    def select(self, condition: Any, a: Any, b: Any) -> Any:
+        if not isinstance(condition, Doubtful):
+            a, b = self._pair(a, b)
+            return Ball(numbers.select(condition, a.mid, b.mid), numbers.select(condition, a.rad, b.rad), a.u)
+        if not (isinstance(a, Ball) or isinstance(b, Ball)):
+            raise TypeError("an undecided selection needs a ball on one side")
+        a, b = self._pair(a, b)
+        value = condition.value
+        mid = numbers.select(value, a.mid, b.mid)
+        rad = numbers.select(value, a.rad, b.rad)
+        other = numbers.select(value, b.mid, a.mid)
+        hull = _max(rad, _abs(other - mid) + numbers.select(value, b.rad, a.rad))
+        return Ball(mid, numbers.select(condition.sure, rad, hull), a.u)
+
+    def sqrt0(self, x: Ball) -> Ball:
+        # The root of [lo, hi] clipped at 0; s - sqrt(lo) = (x - lo)/(s + sqrt(lo)) without cancellation.
+        s = numbers.sqrt0(x.mid)
+        low = numbers.sqrt0(x.lower)
+        high = numbers.sqrt0(x.upper)
+        total = s + low
+        below = numbers.select(low > 0.0, x.rad / numbers.select(total > 0.0, total, 1.0), s)
+        rise = s + high
+        above = numbers.select(s > 0.0, x.rad / numbers.select(rise > 0.0, rise, 1.0), high)
+        return x._rounded(s, _max(below, above))
+
+    def clamp0(self, x: Ball) -> Ball:
+        return Ball(numbers.clamp0(x.mid), x.rad, x.u)  # 1-Lipschitz
+
+    def power(self, x: Ball, n: Any) -> Ball:
+        # t -> t^n is increasing, so the bounds of the ball go through the same chain; each of its
+        # at most 2 log2 n + 1 roundings is repeated by later squarings, in all at most 2n of them.
+        mid = numbers.power(x.mid, n)
+        high = numbers.power(x.upper, n)
+        low = numbers.power(numbers.clamp0(x.lower), n)
+        roundings = 2.0 * x.u * (n if isinstance(n, float | int) else _like(x.mid, n))
+        return Ball(mid, _max(high - mid, mid - low) + high * roundings, x.u)
+
+    def sum3(self, a: Any, b: Any, c: Any) -> Any:
+        # Partial sums of any order stay below |a|+|b|+|c|: two roundings of that size.
+        first = next(x for x in (a, b, c) if isinstance(x, Ball))
+        a, b, c = (x if isinstance(x, Ball) else Ball(x, 0.0, first.u) for x in (a, b, c))
+        size = (_abs(a.mid) + _abs(b.mid)) + _abs(c.mid)
+        return Ball((a.mid + b.mid) + c.mid, ((a.rad + b.rad) + c.rad) + size * (2.0 * first.u), first.u)
+
+    def unit3(self, x: Any, y: Any, z: Any) -> tuple[Ball, Ball, Ball]:
+        """Mean value form: the derivative of a/|a| is (1 - n n')/|a|, so errors along n fall away.
+
+        Over the ball |a| >= |a_mid| - R with R the length of the radii, and n moves by at most
+        e = R/(|a_mid| - R), so each entry of 1 - n n' by at most 2e + e². Rounding: the length is
+        right to 2.5u and the quotient adds u; 5u covers both.
+        """
+        first = next(a for a in (x, y, z) if isinstance(a, Ball))
+        a = [part if isinstance(part, Ball) else Ball(part, 0.0, first.u) for part in (x, y, z)]
+        n = numbers.unit3(*(part.mid for part in a))
+        size = numbers.sqrt0(numbers.sum3(*(part.mid * part.mid for part in a)))
+        spread = (a[0].rad + a[1].rad) + a[2].rad
+        room = size - spread
+        safe = room > 0.0
+        room = numbers.select(safe, room, 1.0)
+        e = spread / room
+        result = []
+        for k in range(3):
+            slopes = [_abs((1.0 if j == k else 0.0) - n[k] * n[j]) * a[j].rad for j in range(3)]
+            moved = ((slopes[0] + slopes[1]) + slopes[2] + (2.0 * e + e * e) * spread) / room
+            rad = moved + _abs(n[k]) * (5.0 * first.u)
+            result.append(Ball(n[k], numbers.select(safe, rad, 2.0), first.u))
+        return result[0], result[1], result[2]
+
+
+def _like(real: Any, integers: Any) -> Any:
+    """Integers as reals of the type of `real`."""
+    return integers.astype(real.dtype) if hasattr(integers, "astype") else type(real)(integers)
+
+
+numbers.register(BallOperations(), Ball, Doubtful)

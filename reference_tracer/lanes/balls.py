@@ -1,0 +1,156 @@
+"""The wavefront's decisions on balls: what cannot be decided is bounded and named.
+
+`Balls` answers the same questions as `Floats`. Where the nearest object or total reflection is
+undecided, the colour of that ray is only known to lie between 0 and the brightest colour that any
+ray of its generation can have; the weights on the way to the eye shrink that bound.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from reference_tracer.lanes.backend import Backend
+from reference_tracer.lanes.ball import INFINITY, Ball, Doubtful
+from reference_tracer.lanes.floats import Nearest
+from reference_tracer.numbers import select
+from reference_tracer.rulebook import Rulebook
+from reference_tracer.vector import Vec
+from scenes.model import Light, Material, PointLight, Scene, Sphere
+
+HIT = 1
+
+
+class Balls:
+    """Balls at unit roundoff u.
+
+    scene: for the brightest colour of each generation; single: the tracer reads a scene's numbers
+    into float32; offset: how far from its start a ray may lawfully fail to see a surface.
+    """
+
+    def __init__(self, u: float, scene: Scene, lanes: Backend, single: bool, offset: float) -> None:
+        self.u = lanes.scalar(u)
+        self.inputs = lanes.to_single if single else _as_given
+        self.offset = lanes.scalar(offset)
+        self.brightest = [[lanes.scalar(top) for top in tops] for tops in brightest(scene)]
+
+    def read(self, array: Any) -> Ball:
+        gap = array - self.inputs(array)
+        return Ball(array, select(gap < 0.0, -gap, gap), self.u)
+
+    def exact(self, array: Any) -> Ball:
+        return Ball(array, array - array, self.u)
+
+    def start(self) -> Ball:
+        return Ball(0.0, self.offset, self.u)
+
+    def midpoint(self, condition: Doubtful) -> Any:
+        return condition.value
+
+    def surely(self, condition: Doubtful) -> Any:
+        return condition.value & condition.sure
+
+    def matters(self, colour: Vec) -> Any:
+        x, y, z = ((part.mid != 0.0) | (part.rad != 0.0) for part in colour)
+        return x | y | z
+
+    def none_yet(self, real: Any, integer: Any) -> Any:
+        """Best hit, its row, whether it certainly exists, and the nearest that might beat it."""
+        no = integer != 0
+        return (Ball(real + INFINITY, real, self.u), integer - 1, no, real + INFINITY)
+
+    def consider(self, state: Any, rules: Rulebook, distance: Ball, meets: Doubtful, row: Any) -> Any:
+        best, best_row, certain, rival = state
+        wins = meets.value & ((best_row < 0) | rules.nearer(distance.mid, best.mid, row, best_row))
+        # The loser of this comparison may still be nearer than the final best: keep the least such bound
+        beaten = select(best_row < 0, INFINITY, _lower(best))
+        loser = select(wins, beaten, select(meets.possible, _lower(distance), INFINITY))
+        rival = select(loser < rival, loser, rival)
+        return (
+            select(wins, distance, best),
+            select(wins, row, best_row),
+            select(wins, meets.sure, certain),
+            rival,
+        )
+
+    def settle(self, state: Any) -> tuple[Nearest, Any]:
+        best, row, certain, rival = state
+        found = row >= 0
+        decided = (found & certain & (best.upper < rival)) | ~(found | (rival < INFINITY))
+        none = row - row
+        return Nearest(best, row), select(decided, none, none + HIT)
+
+    def doubt(self, doubts: Any, kind: int, condition: Doubtful, matters: Any) -> Any:
+        none = doubts - doubts
+        return doubts | select(matters & ~condition.sure, none + kind, none)
+
+    def bounded(self, colour: Vec, doubts: Any, generation: int) -> Vec:
+        lost = (doubts & HIT) > 0
+        return Vec(*(self._clip(c, lost, top) for c, top in zip(colour, self.brightest[generation], strict=True)))
+
+    def join(self, doubts: Any, *others: Any) -> Any:
+        for other in others:
+            doubts = doubts | other
+        return doubts
+
+    def branch(self, colour: Vec, total: Doubtful, transmits: Any, generation: int) -> Vec:
+        lost = transmits & ~total.sure
+        tops = self.brightest[min(generation, len(self.brightest) - 1)]
+        return Vec(*(self._clip(c, lost, top) for c, top in zip(colour, tops, strict=True)))
+
+    def _clip(self, colour: Ball, lost: Any, top: Any) -> Ball:
+        """The ball cut to [0, top]; all of [0, top] where lost."""
+        room = select(colour.mid > top - colour.mid, colour.mid, top - colour.mid)
+        known = ~lost & (colour.rad < room)
+        return Ball(colour.mid, select(known, colour.rad, room), self.u)
+
+
+def _as_given(array: Any) -> Any:
+    return array
+
+
+def _lower(ball: Ball) -> Any:
+    lower = ball.lower
+    return select(lower == lower, lower, -INFINITY)  # NaN: nothing is known
+
+
+def brightest(scene: Scene) -> list[tuple[float, float, float]]:
+    """An upper bound of the colour of any ray of generation 0, 1, ... depth, channel by channel.
+
+    Local light: ambient + Σ attenuation·colour·(diffuse + specular), each cosine at most 1; then
+    by the recursion of the shading sum, from the last generation up. The margin of 1e-6 covers the
+    rounding of this estimate and of the tracer's.
+    """
+    used = [scene.materials[name] for name in {thing.material for thing in scene.objects}]
+    near = [_strongest(light, scene) for light in scene.lights]
+
+    def local(m: Material, k: int) -> float:
+        lit = (m.diffuse[k] + m.specular[k]) or 0.0
+        return m.ambient[k] + sum(a * light.color[k] * lit for a, light in zip(near, scene.lights, strict=True) if lit)
+
+    last: list[tuple[float, ...]] = []
+    for generation in range(scene.depth, -1, -1):
+        tops = []
+        for k in range(3):
+            deeper = last[-1][k] if generation < scene.depth else 0.0
+            surfaces = [local(m, k) + ((m.reflect[k] + m.transmit[k]) * deeper if deeper else 0.0) for m in used]
+            tops.append(max([scene.background[k], *surfaces]) * (1.0 + 1e-6))
+        last.append(tuple(tops))
+    return last[::-1]  # type: ignore[return-value]
+
+
+def _strongest(light: Light, scene: Scene) -> float:
+    """The largest attenuation factor of a light on any surface."""
+    if not isinstance(light, PointLight) or light.attenuation == "none":
+        return 1.0
+    k = light.position
+    gaps = [
+        abs(math.dist(k, t.center) - t.radius)
+        if isinstance(t, Sphere)
+        else abs(sum(a * b for a, b in zip(t.normal, k, strict=True)) - t.offset) / math.hypot(*t.normal)
+        for t in scene.objects
+    ]
+    gap = min(gaps, default=math.inf)
+    if gap == 0.0:
+        return math.inf
+    return 1.0 / (gap if light.attenuation == "inverse" else gap * gap)

@@ -1,0 +1,147 @@
+"""The plain tracer: the lecture's FindRGB on Python floats, the specification of all the others.
+
+Read this file to know what a picture means; the lanes compute the same numbers,
+bit for bit, only faster.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reference_tracer.image import Image
+from reference_tracer.lanes.tables import rows
+from reference_tracer.rulebook import LECTURE, Rulebook
+from reference_tracer.vector import Vec
+from scenes.model import Object, PointLight, Scene, Sphere
+
+BLACK = Vec(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Hit:
+    """The nearest object on a ray, where, and the object's outward normal there."""
+
+    order: int
+    thing: Object
+    p: Vec
+    n: Vec
+
+
+class PlainTracer:
+    """Traces one scene, one ray at a time."""
+
+    def __init__(self, scene: Scene, rules: Rulebook = LECTURE) -> None:
+        self.scene = scene
+        self.rules = rules
+        self.objects = rows(scene)
+
+    def pixel(self, i: int, j: int) -> Vec:
+        """Linear colour of pixel (i, j)."""
+        eye = Vec(*self.scene.camera.eye)
+        return self.find_rgb(eye, self.eye_ray(i, j), None, 0)
+
+    def eye_ray(self, i: int, j: int) -> Vec:
+        """Unit direction of the ray through pixel (i, j)."""
+        image, camera = self.scene.image, self.scene.camera
+        X, Y = self.rules.plane_point(float(i), float(j), float(image.width), float(image.height), image.sample)
+        return self.rules.camera_ray(Vec(*camera.forward), Vec(*camera.right), Vec(*camera.up), X, Y)
+
+    def find_rgb(self, o: Vec, v: Vec, start: int | None, generation: int) -> Vec:
+        """Colour seen from o along unit v. L11 "Modified FindRGB" and "Refraction with geo.tr vector".
+
+        start: the object (its place in self.objects) that the ray starts on.
+        """
+        hit = self.nearest(o, v, start)
+        if hit is None:
+            return Vec(*self.scene.background)  # L11 "three features": the ray goes astray
+
+        material = self.scene.materials[hit.thing.material]
+        n, leaving = self.rules.face(v, hit.n)
+        local = self.local_colour(hit, n, v)
+        if generation == self.scene.depth:
+            return local
+
+        reflect, transmit = Vec(*material.reflect), Vec(*material.transmit)
+        reflected = transmitted = BLACK
+        if any(material.reflect):
+            r = self.rules.mirror(-v, n)
+            reflected = self.find_rgb(hit.p, r, hit.order, generation + 1)
+        if any(material.transmit):
+            t, total = self.rules.refract(v, n, leaving, material.index)
+            if not total:
+                transmitted = self.find_rgb(hit.p, t, hit.order, generation + 1)
+        if self.scene.fresnel:
+            F = self.rules.fresnel(v, n, leaving, material.index)
+            reflect, transmit = reflect * F, transmit * (1.0 - F)
+        return self.rules.mix(local, reflect, reflected, transmit, transmitted)
+
+    def nearest(self, o: Vec, v: Vec, start: int | None) -> Hit | None:
+        """The first object along the ray. L11 "Ray Tracing Depth Sorting"."""
+        best, found = float("inf"), -1
+        for order, thing in enumerate(self.objects):
+            distance, meets = self.meet(o, v, thing, order == start)
+            if meets and (found < 0 or self.rules.nearer(distance, best, order, found)):
+                best, found = distance, order
+        if found < 0:
+            return None
+        thing = self.objects[found]
+        p = o + v * best
+        return Hit(found, thing, p, self.normal(thing, p))
+
+    def meet(self, o: Vec, v: Vec, thing: Object, starts_here: bool) -> tuple[float, bool]:
+        """Distance to one object, and whether the ray meets it."""
+        rules = self.rules
+        if isinstance(thing, Sphere):
+            c = Vec(*thing.center)
+            return rules.sphere_hit(rules.sphere_distances, o, v, c, thing.radius, starts_here, 0.0)
+        return rules.plane_hit(o, v, Vec(*thing.normal), thing.offset, not starts_here, 0.0)
+
+    def normal(self, thing: Object, p: Vec) -> Vec:
+        """Outward unit normal of an object at p."""
+        if isinstance(thing, Sphere):
+            return self.rules.sphere_normal(p, Vec(*thing.center))
+        return self.rules.plane_normal(Vec(*thing.normal))
+
+    def local_colour(self, hit: Hit, n: Vec, v: Vec) -> Vec:
+        """Ambient, and the diffuse and specular light of every lamp in view. L11 "Phong Effect"."""
+        rules = self.rules
+        material = self.scene.materials[hit.thing.material]
+        colour = Vec(*material.ambient)
+        for light in self.scene.lights:
+            is_point = isinstance(light, PointLight)
+            k = Vec(*(light.position if isinstance(light, PointLight) else light.toward))
+            kind = light.attenuation if isinstance(light, PointLight) else "none"
+            i, distance = rules.light_vector(k, hit.p, is_point)
+            factor = rules.attenuation(distance, kind == "inverse", kind == "inverse_square")
+            cosine = rules.lambert(i, n)
+            gloss = rules.phong(i, n, v, material.shininess, rules.reflect(i, n))
+            diffuse, specular = Vec(*material.diffuse), Vec(*material.specular)
+            share = rules.direct_light(Vec(*light.color), factor, diffuse, cosine, specular, gloss)
+            if any(share) and self.scene.shadows and self.shadowed(hit.p, i, distance, hit.order):
+                continue
+            colour = colour + share
+        return colour
+
+    def shadowed(self, p: Vec, i: Vec, light_distance: float, start: int) -> bool:
+        """Does anything stand strictly between p and the light? L11 "Example of Ray Tracing"."""
+        for order, thing in enumerate(self.objects):
+            distance, meets = self.meet(p, i, thing, order == start)
+            if meets and self.rules.blocks(distance, light_distance):
+                return True
+        return False
+
+
+def render(scene: Scene, rules: Rulebook = LECTURE, progress: Callable[[float], Any] = lambda share: None) -> Image:
+    """Render a whole scene; pixels (height, width, 3) float64, linear."""
+    tracer = PlainTracer(scene, rules)
+    width, height = scene.image.width, scene.image.height
+    pixels = np.empty((height, width, 3))
+    for j in range(height):
+        for i in range(width):
+            pixels[j, i] = tracer.pixel(i, j)
+        progress((j + 1) / height)
+    return Image(pixels)

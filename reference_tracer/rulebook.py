@@ -1,0 +1,69 @@
+"""The frozen record of formulas a tracer runs by.
+
+A method of the accuracy-speed chart is a rulebook with another sphere or
+refraction formula; a fault is a rulebook with one entry replaced by a wrong one.
+Neither ever puts a flag into a tracer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from reference_tracer.formulas import camera, display, optics, plane, shading, sphere
+from reference_tracer.numbers import Condition, Number, less
+from reference_tracer.vector import Vec
+
+
+def nearer(distance: Number, best: Number, order: Any, best_order: Any) -> Condition:
+    """Where a hit at `distance` wins over the best so far: the smaller λ, then the earlier object.
+
+    L11 "Ray Tracing Depth Sorting": the nearest to the viewpoint. `order` is the object's place,
+    spheres before planes; without a tie it does not matter.
+    """
+    return (distance < best) | ((distance == best) & (order < best_order))
+
+
+def blocks(distance: Number, light_distance: Number) -> Condition:
+    """Where a surface at `distance` stands strictly between the point and the light."""
+    return less(distance, light_distance)
+
+
+def mix(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transmitted: Vec) -> Vec:
+    """Add the branches to the local colour: ret + ref·specular + tra·transparent.
+
+    L11 "Refraction with geo.tr vector".
+    """
+    return (local + reflect * reflected) + transmit * transmitted
+
+
+@dataclass(frozen=True)
+class Rulebook:
+    """One entry a formula; the default entries are the lecture's, mended where it errs."""
+
+    name: str = "lecture"
+    plane_point: Callable[..., tuple[Number, Number]] = camera.plane_point
+    camera_ray: Callable[..., Vec] = camera.camera_ray
+    sphere_distances: Callable[..., tuple[Number, Number, Number]] = sphere.sphere_distances
+    sphere_hit: Callable[..., tuple[Number, Condition]] = sphere.sphere_hit
+    plane_hit: Callable[..., tuple[Number, Condition]] = plane.plane_hit
+    nearer: Callable[..., Condition] = nearer
+    sphere_normal: Callable[..., Vec] = sphere.sphere_normal
+    plane_normal: Callable[..., Vec] = plane.plane_normal
+    face: Callable[..., tuple[Vec, Condition]] = optics.face
+    reflect: Callable[[Vec, Vec], Vec] = optics.reflect
+    mirror: Callable[[Vec, Vec], Vec] = optics.reflect
+    refract: Callable[..., tuple[Vec, Condition]] = optics.refract
+    fresnel: Callable[..., Number] = optics.fresnel
+    light_vector: Callable[..., tuple[Vec, Number]] = shading.light_vector
+    attenuation: Callable[..., Number] = shading.attenuation
+    lambert: Callable[[Vec, Vec], Number] = shading.lambert
+    phong: Callable[..., Number] = shading.phong
+    direct_light: Callable[..., Vec] = shading.direct_light
+    blocks: Callable[[Number, Number], Condition] = blocks
+    mix: Callable[..., Vec] = mix
+    encode: Callable[..., display.Codes] = display.encode
+
+
+LECTURE = Rulebook()

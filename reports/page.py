@@ -1,0 +1,150 @@
+"""index.html: a run on one page, in one file, offline; with scripts off it still tells everything.
+
+Its Content-Security-Policy admits nothing but this page's own style and script, by their hashes, and
+embedded pictures. What came from the tracer is text: made plain, bounded, escaped.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from base64 import b64encode
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from oracles.verdict import Pixel, Verdict, Word
+from reports import conclusion, format, plain
+from reports.pictures import Picture, gallery
+from reports.results import Results
+
+FILE = "index.html"
+
+SYMBOLS: dict[Word, str] = {
+    "pass": "✓",
+    "fail": "✗",
+    "invalid": "✗",
+    "crash": "✗",
+    "timeout": "✗",
+    "error": "✗",
+    "fixed": "↑",
+    "blocked": "⊘",
+    "undecided": "?",
+    "unsupported": "–",
+    "known": "k",
+}
+"""Colour never tells alone: each word has a sign."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A verdict on the page: its place to link to, and its pictures by kind."""
+
+    anchor: str
+    verdict: Verdict
+    pictures: dict[str, Picture]
+
+    @property
+    def mark(self) -> Pixel | None:
+        """The worst pixel, where the verdict's pictures show it one to one."""
+        judged = self.verdict.judged
+        if judged is None or judged.worst is None:
+            return None
+        sizes = [(p.width, p.height) for p in self.pictures.values() if not p.missing]
+        worst = judged.worst
+        shown = all(w * h == judged.pixels and 0 <= worst.i < w and 0 <= worst.j < h for w, h in sizes)
+        return worst if shown else None
+
+
+def write(results: Results, folder: Path) -> Path:
+    """Write index.html whole or not at all; return its path."""
+    path = folder / FILE
+    temporary = folder / f".{FILE}.{os.getpid()}.tmp"
+    temporary.write_bytes(render(results, folder).encode())
+    temporary.replace(path)
+    return path
+
+
+def render(results: Results, folder: Path) -> str:
+    """The page's text; the pictures are read from folder."""
+    clean = plain.results(results)
+    entries = _entries(clean, folder)
+    return (
+        _environment()
+        .get_template(FILE)
+        .render(
+            results=clean,
+            sentence=conclusion.sentence(clean),
+            counts=conclusion.counts(clean),
+            ladder=entries,
+            against=_with(entries, *conclusion.AGAINST),
+            blocked=_with(entries, "blocked"),
+            open=_with(entries, *conclusion.OPEN),
+            passed=_with(entries, "pass"),
+            anchors={entry.verdict.check: entry.anchor for entry in reversed(entries)},
+            policy=_policy(),
+        )
+    )
+
+
+def _entries(results: Results, folder: Path) -> list[Entry]:
+    """Every verdict in the run's order; the pictures are spent on the worst first."""
+    wanted = [name for verdict in conclusion.ordered(results.verdicts) for _, name in _pictures(verdict)]
+    found = gallery(folder, wanted)
+    return [
+        Entry(_anchor(index, verdict.check), verdict, {kind: found[name] for kind, name in _pictures(verdict)})
+        for index, verdict in enumerate(results.verdicts, start=1)
+    ]
+
+
+def _pictures(verdict: Verdict) -> Iterator[tuple[str, str]]:
+    """(kind, path) of the pictures that the page shows: of a pass only what it got."""
+    kinds = ("got",) if verdict.verdict == "pass" else ("expected", "got", "difference")
+    for kind in kinds:
+        name = getattr(verdict.pictures, kind)
+        if name is not None:
+            yield kind, name
+
+
+def _with(entries: list[Entry], *words: Word) -> list[Entry]:
+    return [entry for entry in entries if entry.verdict.verdict in words]
+
+
+def _anchor(index: int, check: str) -> str:
+    """An id of harmless letters, unique by its number."""
+    return f"check-{index}-{re.sub('[^a-z0-9]+', '-', check.lower())[:60].strip('-')}"
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("reports"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=False,
+    )
+    shown = ("value", "measure", "count", "share", "seconds", "excess", "off", "unit", "doubtful", "kinds", "shell")
+    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide")}
+    environment.globals["symbols"] = SYMBOLS
+    return environment
+
+
+@cache
+def _policy() -> str:
+    """The page's Content-Security-Policy."""
+    return (
+        f"default-src 'none'; img-src data:; style-src '{_hash('page.css')}'; script-src '{_hash('page.js')}'; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _hash(name: str) -> str:
+    """The source expression for a file that the page includes as it stands."""
+    body = _environment().get_template(name).render()
+    return f"sha256-{b64encode(sha256(body.encode()).digest()).decode()}"

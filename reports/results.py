@@ -1,0 +1,114 @@
+"""results.json: everything a check found, and the one thing all reports are written from."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Literal
+
+from pydantic import ValidationError
+
+from oracles.verdict import CONFORMING, Frozen, Verdict
+
+FILE = "results.json"
+MAX_BYTES = 64 * 2**20
+
+
+class Subject(Frozen):
+    """The tracer under test, as attached."""
+
+    name: str
+    spec: str
+    precision: str
+    scene: str = ""
+    image: str = ""
+    features: tuple[str, ...] | None = None
+
+
+class Machine(Frozen):
+    """Where the check ran."""
+
+    processor: str
+    cores: int
+    memory_gib: float
+    system: str
+    python: str
+    packages: dict[str, str]
+    lanes: str
+
+
+class Suite(Frozen):
+    """Which suite judged."""
+
+    version: str
+    catalogue: str
+
+
+class Results(Frozen):
+    """One run of the suite against one subject.
+
+    planned: checks that were meant to run; complete: False if the run was cut off before them.
+    """
+
+    schema_version: Literal[1] = 1
+    suite: Suite
+    subject: Subject
+    machine: Machine
+    started: str
+    command: str
+    seed: int
+    size: str | None = None
+    seconds: float = 0.0
+    planned: int
+    verdicts: tuple[Verdict, ...]
+    complete: bool
+
+    @property
+    def conforms(self) -> bool:
+        """No verdict stands against the tracer, and at least one stands for it."""
+        words = [v.verdict for v in self.verdicts]
+        return self.complete and all(word in CONFORMING for word in words) and "pass" in words
+
+    def counts(self) -> dict[str, int]:
+        """Number of verdicts by word, in order of first appearance."""
+        found: dict[str, int] = {}
+        for verdict in self.verdicts:
+            found[verdict.verdict] = found.get(verdict.verdict, 0) + 1
+        return found
+
+
+class ResultsError(Exception):
+    """results.json is missing or not what this version reads."""
+
+
+def write(results: Results, folder: Path) -> Path:
+    """Write results.json whole or not at all; return its path."""
+    path = folder / FILE
+    temporary = folder / f".{FILE}.{os.getpid()}.tmp"
+    temporary.write_text(results.model_dump_json(indent=1) + "\n", "utf-8")
+    temporary.replace(path)
+    return path
+
+
+def read(folder: Path) -> Results:
+    """Read and validate results.json of a report folder."""
+    path = folder / FILE
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise ResultsError(f"{path}: {error.strerror}; expected a folder written by `raycheck check`") from None
+    if len(data) > MAX_BYTES:
+        raise ResultsError(f"{path}: over {MAX_BYTES} bytes")
+    try:
+        return Results.model_validate_json(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(str(part) for part in first["loc"]) or "the file"
+        raise ResultsError(f"{path}: {place}: {first['msg']}; expected results of schema version 1") from None
+
+
+def schema() -> str:
+    """The published JSON Schema, as committed in reports/schema/."""
+    return json.dumps(Results.model_json_schema(), indent=2) + "\n"
