@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test lint bench setup system constraints clean
+.PHONY: demo test lint bench setup schemas constraints clean
 
 demo: $(READY)
 	$(BIN)/raycheck demo --out raycheck-demo
@@ -36,6 +36,12 @@ $(READY): constraints.txt pyproject.toml tools/system-packages
 constraints:
 	uv pip compile --quiet --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url \
 	  --no-emit-find-links --extra peers --extra dev pyproject.toml tools/build-requirements.txt -o constraints.txt
+
+# The published schemas, from the models.
+schemas: $(READY)
+	$(BIN)/python -P -c "from pathlib import Path; from scenes import text; from reports import results; \
+	  Path('scenes/schema/scene-1.json').write_text(text.schema()); \
+	  Path('reports/schema/results-1.json').write_text(results.schema())"
 
 clean:
 	rm -rf $(VENV) raycheck-demo raycheck-report examples/*/tracer

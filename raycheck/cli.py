@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
+import os
+import signal
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
 from raycheck import VERSION
-from raycheck.errors import BROKEN, INTERRUPTED, MISUSE, RaycheckError
+from raycheck.errors import BROKEN, CONFORMS, INTERRUPTED, MISUSE, RaycheckError, UsageError
 
 EXIT_CODES = """exit codes: 0 conforms, 1 does not conform, 2 the call, scene or manifest is wrong,
 3 the tracer could not be started, 4 the suite itself failed, 130 interrupted"""
@@ -102,11 +105,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(words)
     options.tracer = tracer
     options.words = words
+    code = CONFORMS
     try:
+        _examine(options)
         command = importlib.import_module(f"raycheck.commands.{options.run}")
-        code: int = command.run(options)
-        sys.stdout.flush()
-        return code
+        code = command.run(options)
     except RaycheckError as error:
         print(f"raycheck: {error}", file=sys.stderr)
         return error.code
@@ -114,10 +117,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("raycheck: interrupted", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:
-        sys.stderr.close()
-        return 0
+        pass  # whoever reads our output has read enough
     except Exception as error:
         return _broken(error)
+    _flush()
+    return code
+
+
+def _examine(options: argparse.Namespace) -> None:
+    """What argparse cannot see: a command after -- that no one asked for, and words that no file can repeat."""
+    if options.tracer is not None and not hasattr(options, "subject"):
+        raise UsageError(f"raycheck {options.run} takes no command after --", "one for check and smoke")
+    for word in (*options.words, *(options.tracer or ())):
+        if any("\ud800" <= c <= "\udfff" for c in word):
+            raise UsageError(f"{word!r} is not UTF-8", "names that a report can hold")
+
+
+def _flush() -> None:
+    """Send off what stdout holds back; where its reader has gone, to nowhere, also when Python ends."""
+    try:
+        print(end="", flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _broken(error: Exception) -> int:
@@ -135,5 +156,8 @@ def _broken(error: Exception) -> int:
 
 
 def entry() -> NoReturn:
-    """The console script."""
+    """The console script: told to stop it still writes what it has; a letter that stdout lacks stops nothing."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
     raise SystemExit(main())

@@ -5,13 +5,15 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from oracles.verdict import Verdict
 from raycheck.errors import UsageError
 
 MAX_BYTES = 2**20
+Said = Annotated[str, Field(min_length=1)]
 
 
 class Entry(BaseModel):
@@ -20,8 +22,8 @@ class Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     check: str
-    reason: str
-    url: str
+    reason: Said
+    url: Said
 
 
 class _File(BaseModel):
@@ -57,15 +59,18 @@ def load(path: Path | None, checks: set[str]) -> Known:
     try:
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
-        entries = _File.model_validate(tomllib.loads(data.decode("utf-8"))).known
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}", "a TOML file of [[known]] entries") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: not TOML: {error}") from None
+    if len(data) > MAX_BYTES:
+        raise UsageError(f"{path}: over {MAX_BYTES} bytes", "a TOML file of [[known]] entries")
+    try:
+        entries = _File.model_validate(tomllib.loads(data.decode("utf-8"))).known
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(str(part) for part in first["loc"])
         raise UsageError(f"{path}: {place}: {first['msg']}", "[[known]] with check, reason and url") from None
+    except (ValueError, RecursionError) as error:  # ValueError: TOML's and Unicode's own, and integers without end
+        raise UsageError(f"{path}: not TOML: {error}") from None
     for entry in entries:
         if entry.check not in checks:
             raise UsageError(f"{path}: no check is called {entry.check!r}", "names as in the report: image/SCENE")

@@ -12,7 +12,8 @@ from raycheck.errors import UsageError
 
 FILE = "raycheck.toml"
 MAX_BYTES = 2**16
-Words = Annotated[tuple[str, ...], Field(min_length=1, max_length=100)]
+Word = Annotated[str, Field(pattern=r"^[^\x00]*$")]
+Words = Annotated[tuple[Word, ...], Field(min_length=1, max_length=100)]
 FEATURES = ("plane", "shadow", "reflect", "refract", "fresnel")
 
 
@@ -32,7 +33,7 @@ class Manifest(Frozen):
     image: Literal["pfm", "exr", "npy", "ppm", "png"] = "pfm"
     precision: Literal["float32", "float64"] = "float32"
     features: tuple[Literal["plane", "shadow", "reflect", "refract", "fresnel"], ...] | None = None
-    timeout: Annotated[float, Field(gt=0, le=3600)] = 30.0
+    timeout: Annotated[float, Field(gt=0, le=3600, strict=True)] = 30.0
 
 
 class _File(Frozen):
@@ -52,13 +53,14 @@ def load(folder: Path) -> Manifest:
         raise UsageError(f"{path}: over {MAX_BYTES} bytes", "a manifest of a few lines")
     try:
         return _File.model_validate(tomllib.loads(data.decode("utf-8"))).tracer
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: not TOML: {error}") from None
     except ValidationError as error:
-        raise UsageError(f"{path}: {_explain(error)}") from None
+        raise UsageError(f"{path}: {explain(error)}") from None
+    except (ValueError, RecursionError) as error:  # ValueError: TOML's and Unicode's own, and integers without end
+        raise UsageError(f"{path}: not TOML: {error}") from None
 
 
-def _explain(error: ValidationError) -> str:
+def explain(error: ValidationError) -> str:
+    """The first problem in one line: key, value, what was expected."""
     first = error.errors(include_url=False)[0]
     key = ".".join(str(part) for part in first["loc"])
     match first["type"]:

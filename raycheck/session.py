@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import shlex
 import sys
 import time
 from collections.abc import Sequence
@@ -19,6 +21,8 @@ from raycheck.subjects import Subject
 from raycheck.suite import Plan, judge
 from reports import junit, page, results, summary
 from scenes.catalogue import Rung, catalogue_hash, ladder, rung
+
+WRITABLE = "a folder that can be written, with --out DIR"
 
 
 @dataclass(frozen=True)
@@ -40,9 +44,9 @@ def check(order: Order) -> tuple[results.Results, int]:
     """Run the suite, write the report, return the results and the exit code."""
     begin = time.monotonic()
     started = datetime.now(UTC).isoformat(timespec="seconds")
-    make_folder(order.out)
-    order.subject.prepare()
     plan = Plan(chosen(order.scenes), order.size, order.seed, order.block, order.known, order.repeat)
+    _make_room(order.out)
+    order.subject.prepare()
     verdicts: list[Verdict] = []
     complete = False
     progress = Progress(f"checking {order.subject.name}", len(plan.rungs))
@@ -53,9 +57,23 @@ def check(order: Order) -> tuple[results.Results, int]:
         complete = True
     except KeyboardInterrupt:
         print("\ninterrupted: writing what there is", file=sys.stderr)
+    except Exception:
+        if verdicts:
+            write(_results(order, plan, verdicts, False, started, begin), order.out)
+        raise
     finally:
         progress.close()
-    found = results.Results(
+    found = _results(order, plan, verdicts, complete, started, begin)
+    write(found, order.out)
+    if not complete:
+        return found, INTERRUPTED
+    return found, CONFORMS if found.conforms else DIFFERS
+
+
+def _results(
+    order: Order, plan: Plan, verdicts: Sequence[Verdict], complete: bool, started: str, begin: float
+) -> results.Results:
+    return results.Results(
         suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
         subject=_described(order.subject),
         machine=machine(),
@@ -68,24 +86,30 @@ def check(order: Order) -> tuple[results.Results, int]:
         verdicts=tuple(verdicts),
         complete=complete,
     )
-    write(found, order.out)
-    if not complete:
-        return found, INTERRUPTED
-    return found, CONFORMS if found.conforms else DIFFERS
 
 
 def write(found: results.Results, folder: Path) -> Path:
-    """results.json first, then what is made from it; return the page's path."""
-    results.write(found, folder)
-    junit.write(found, folder)
-    return page.write(found, folder)
+    """results.json first, then what is made from it; return the page's path; raise UsageError if that cannot be."""
+    try:
+        results.write(found, folder)
+        junit.write(found, folder)
+        return page.write(found, folder)
+    except OSError as error:
+        raise UsageError(f"the report cannot be written: {error}", WRITABLE) from None
 
 
 def tell(found: results.Results, folder: Path) -> None:
-    """The summary on stdout."""
-    for line in summary.lines(found):
-        print(line)
-    print(f"report: {folder / 'index.html'}")
+    """The summary on stdout; a reader who has gone does not change the verdict."""
+    with contextlib.suppress(BrokenPipeError):
+        for line in summary.lines(found):
+            print(line)
+        print(f"report: {folder / 'index.html'}")
+
+
+def repeat_line(words: Sequence[str], tail: Sequence[str]) -> str:
+    """The call `raycheck words --scenes {scene} tail`; {scene} is filled in by format, other braces are doubled."""
+    before, after = (shlex.join(part).replace("{", "{{").replace("}", "}}") for part in (words, tail))
+    return f"raycheck {before} --scenes {{scene}} {after}".rstrip()
 
 
 def chosen(names: Sequence[str] | None) -> list[Rung]:
@@ -104,7 +128,16 @@ def make_folder(folder: Path) -> None:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise UsageError(f"{folder}: {error.strerror}", "a folder that can be written, with --out DIR") from None
+        raise UsageError(f"{folder}: {error.strerror}", WRITABLE) from None
+
+
+def _make_room(folder: Path) -> None:
+    """The folders of a report; raise UsageError if something stands where the report goes."""
+    for part in (folder, folder / "images"):
+        make_folder(part)
+    for name in (results.FILE, junit.FILE, page.FILE):
+        if (folder / name).is_dir():
+            raise UsageError(f"{folder / name}: a folder is in the way of the report", WRITABLE)
 
 
 def _described(subject: Subject) -> results.Subject:

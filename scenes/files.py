@@ -54,6 +54,8 @@ def from_json(text: str, origin: str = "scene") -> Scene:
         raise SceneError("nested too deeply", origin, hint="the JSON scene form") from None
     except _DuplicateKeyError as error:
         raise SceneError("key given twice", origin, repr(str(error)), "each key once") from None
+    except ValueError:  # Python refuses to convert integers of thousands of digits
+        raise SceneError("an integer of too many digits", origin, hint="numbers in the range of float64") from None
     return from_data(data, origin)
 
 
@@ -98,8 +100,7 @@ def _explain(error: ValidationError, origin: str) -> SceneError:
     """The first problem as file: path: what (got value); expected ..."""
     first = error.errors(include_url=False)[0]
     kind = first["type"]
-    tags = {"sphere", "plane", "point", "directional"}
-    path = ".".join(str(part) for part in first["loc"] if part not in tags) or "scene"
+    path = _path(first["loc"]) or "scene"
     context = first.get("ctx") or {}
     got = "" if kind == "missing" else _short(first["input"])
     match kind:
@@ -108,6 +109,8 @@ def _explain(error: ValidationError, origin: str) -> SceneError:
             if path == "scene" and ": " in hint:
                 path, hint = hint.split(": ", 1)
                 got = ""
+        case "json_invalid":
+            message, got, hint = f"not JSON: {context.get('error', '')}", "", "the JSON scene form"
         case "extra_forbidden":
             message, hint = "unknown key", "only the keys of the scene format, version 1"
         case "missing":
@@ -122,6 +125,12 @@ def _explain(error: ValidationError, origin: str) -> SceneError:
             hint = first["msg"][:1].lower() + first["msg"][1:]
             hint = hint.removeprefix("input should be ")
     return SceneError(message, f"{origin}: {path}", got, hint)
+
+
+def _path(loc: tuple[int | str, ...]) -> str:
+    """Where in the file, without the shape or kind that pydantic puts after the number of an entry."""
+    parts = [*loc[:2], *loc[3:]] if loc[:1] in (("objects",), ("lights",)) else loc
+    return ".".join(str(part) for part in parts)
 
 
 def _short(value: Any) -> str:

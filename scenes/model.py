@@ -8,9 +8,9 @@ these classes; a test keeps the two equal.
 from __future__ import annotations
 
 import hashlib
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 MAX_SIDE = 16384
 MAX_OBJECTS = 10_000
@@ -29,6 +29,13 @@ def _not_zero(vector: tuple[float, float, float]) -> tuple[float, float, float]:
     return vector
 
 
+def _integer(value: Any) -> Any:
+    if type(value) is not int:  # true and 1.0 equal 1
+        raise ValueError("the integer 1")
+    return value
+
+
+Version = Annotated[Literal[1], BeforeValidator(_integer)]
 Vector = tuple[float, float, float]
 Direction = Annotated[Vector, AfterValidator(_not_zero)]
 Intensity = Annotated[float, Field(ge=0)]
@@ -112,7 +119,7 @@ Light = Annotated[PointLight | DirectionalLight, Field(discriminator="kind")]
 class Scene(Frozen):
     """All that a tracer needs to draw one picture."""
 
-    raycheck: Literal[1]
+    raycheck: Version
     name: SceneName
     source: Source
     image: ImagePlane

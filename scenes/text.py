@@ -7,6 +7,7 @@ which `# source ...` carries the scene's source so that JSON → text → JSON i
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -93,7 +94,7 @@ class _Reader:
         self.source = ""
         self.lines: dict[str, int] = {}
         self.statements: list[tuple[int, list[str]]] = []
-        for number, line in enumerate(text.splitlines(), start=1):
+        for number, line in enumerate(text.replace("\r\n", "\n").split("\n"), start=1):
             if line.startswith(_SOURCE) and not self.source:
                 self.source = line.removeprefix(_SOURCE)
             if line.strip() and not line.lstrip().startswith("#"):
@@ -118,6 +119,7 @@ class _Reader:
         data |= {"source": self.source, "materials": {}, "objects": [], "lights": []}
         for line, (word, *rest) in self.statements[count:]:
             if word == "end":
+                self._nothing_after(line, rest)
                 return data
             parse = _BODY.get(word)
             if parse is None:
@@ -125,6 +127,11 @@ class _Reader:
             self._entry(data, line, parse, word, rest)
         last = self.statements[-1][0] if self.statements else 1
         raise self.fail(last, "file ends early", "no `end`", "a last line `end`")
+
+    def _nothing_after(self, line: int, rest: list[str]) -> None:
+        last, words = self.statements[-1]
+        if rest or last != line:
+            raise self.fail(last, "words after `end`", repr(" ".join(rest or words)[:60]), "`end` as the last word")
 
     def _head(self) -> dict[str, Any]:
         names = ["raycheck", *_HEADER]
@@ -139,7 +146,7 @@ class _Reader:
                 shown = " ".join([word, *rest])
                 raise self.fail(line, "statement out of place", repr(shown[:60]), f"`{name}` with {size} word(s)")
             words[name] = rest
-            self.lines[_PATHS.get(name, name)] = line
+            self.lines[name] = self.lines[_PATHS.get(name, name)] = line
         width, height, *sample = words["image"]
         return {
             "raycheck": _number(words["raycheck"][0]),
@@ -178,12 +185,15 @@ _PATHS = {name: f"camera.{name}" for name in ("eye", "forward", "right", "up")} 
 _SIZES = {"material": 18, "sphere": 5, "plane": 5, "point": 7, "directional": 6}
 
 
+_INTEGER = re.compile(r"0|-?[1-9][0-9]{0,18}")  # not -0, whose sign only a float keeps
+
+
 def _number(word: str) -> Any:
     """The number a JSON file would hold; a word that is none stays a string and fails validation."""
-    if word.isascii() and word.isdigit() and len(word) < 20:
+    if _INTEGER.fullmatch(word):
         return int(word)
     try:
-        return word if "_" in word else float(word)
+        return float(word) if word.isascii() and "_" not in word else word
     except ValueError:
         return word
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from argparse import Namespace
 from pathlib import Path
 
@@ -36,7 +35,7 @@ def run(options: Namespace) -> int:
 
 
 def repeat_line(options: Namespace) -> str:
-    """The call that asks one scene again; {scene} is filled in later, other braces doubled."""
+    """The call that asks one scene again; {scene} is filled in later."""
     words = ["check"]
     if options.subject is not None:
         words.append(options.subject)
@@ -47,6 +46,6 @@ def repeat_line(options: Namespace) -> str:
         words += ["--size", options.size]
     if options.seed:
         words += ["--seed", str(options.seed)]
-    tail = ["--", *options.tracer] if options.tracer is not None else []
-    escaped = [word.replace("{", "{{").replace("}", "}}") for word in (shlex.join(words), shlex.join(tail))]
-    return f"raycheck {escaped[0]} --scenes {{scene}} {escaped[1]}".rstrip()
+    if options.known:
+        words += ["--known", options.known]
+    return session.repeat_line(words, ["--", *options.tracer] if options.tracer is not None else [])

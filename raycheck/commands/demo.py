@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from argparse import Namespace
 from pathlib import Path
 
@@ -19,7 +20,7 @@ def run(options: Namespace) -> int:
     out = Path(options.out)
     deserved = True
     for name, expected in EXAMPLES:
-        folder = examples() / name
+        folder = _copied(name, out)
         order = session.Order(
             subject=attach(str(folder)),
             scenes=None,
@@ -29,7 +30,7 @@ def run(options: Namespace) -> int:
             block=False,  # so that every slip of the wrong one shows
             known=Known({}),
             command="raycheck demo",
-            repeat=f"raycheck check {folder} --scenes {{scene}}",
+            repeat=session.repeat_line(["check", str(folder)], []),
         )
         found, code = session.check(order)
         session.tell(found, order.out)
@@ -38,6 +39,14 @@ def run(options: Namespace) -> int:
             return code
         deserved &= code == expected
     return CONFORMS if deserved else BROKEN
+
+
+def _copied(name: str, out: Path) -> Path:
+    """A copy of an example tracer beside the reports: built there, and at hand for reading and mending."""
+    session.make_folder(out)
+    folder = out / "tracers" / name
+    shutil.copytree(examples() / name, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("tracer"))
+    return folder
 
 
 def examples() -> Path:

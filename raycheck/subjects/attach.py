@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from raycheck import manifest
 from raycheck.errors import UsageError
 from raycheck.manifest import Manifest
@@ -38,11 +40,9 @@ def attach(spec: str, precision: str = "float32") -> Subject:
 
 def attach_command(words: list[str], scene: str, image: str, precision: str) -> Subject:
     """A tracer given as its command line, without a manifest."""
-    name = Path(words[0]).name
-    return CommandSubject(
-        Path.cwd(),
-        Manifest.model_validate(
-            {"name": name, "render": tuple(words), "scene": scene, "image": image, "precision": precision}
-        ),
-        spec="",
-    )
+    name = Path(words[0]).name[:200] or repr(words[0])
+    table = {"name": name, "render": tuple(words), "scene": scene, "image": image, "precision": precision}
+    try:
+        return CommandSubject(Path.cwd(), Manifest.model_validate(table), spec="")
+    except ValidationError as error:
+        raise UsageError(f"the command after --: {manifest.explain(error)}") from None

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import tempfile
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from oracles.images import ImageError, read
@@ -12,6 +12,7 @@ from raycheck import process
 from raycheck.errors import StartError, UsageError
 from raycheck.manifest import Manifest
 from raycheck.subjects.subject import Attempt, Problem
+from raycheck.workspace import workspace
 from scenes.files import to_json
 from scenes.model import Scene
 from scenes.text import to_text
@@ -54,8 +55,7 @@ class CommandSubject:
 
     def render(self, scene: Scene, seed: int) -> Attempt:
         """Write the scene, run the program, read the image; the files live in a folder of their own."""
-        with tempfile.TemporaryDirectory(prefix="raycheck-") as name:
-            folder = Path(name)
+        with workspace() as folder:
             scene_file = folder / f"{scene.name}.{'txt' if self.scene_form == 'text' else 'json'}"
             image_file = folder / f"{scene.name}.{self.image_form}"
             scene_file.write_text(to_text(scene) if self.scene_form == "text" else to_json(scene), "utf-8")
@@ -85,6 +85,8 @@ class CommandSubject:
             raise StartError(
                 f"{words[0]!r} cannot be started: {error.strerror}", "check the path, and that it is executable"
             ) from None
+        # The folder has another name each time: without it, equal runs tell equal stories
+        ended = replace(ended, tail=ended.tail.replace(f"{image_file.parent}{os.sep}", ""))
         evidence = Process(
             command=self.manifest.render, status=ended.status, seconds=ended.seconds, output_tail=ended.tail
         )

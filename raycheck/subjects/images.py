@@ -18,7 +18,7 @@ class ImagesSubject:
     features: tuple[str, ...] | None = None
 
     def __init__(self, folder: Path, precision: str) -> None:
-        if not folder.is_dir():
+        if not folder.name or not folder.is_dir():
             raise UsageError(f"images:{folder}: no such folder", "a folder with one image a scene, named by the scene")
         self.folder = folder
         self.name = f"images in {folder.name}"

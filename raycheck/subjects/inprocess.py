@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import sys
 import tempfile
@@ -79,13 +80,15 @@ class PythonSubject:
 
     def prepare(self) -> None:
         """Import the module, from the current folder too, and find the object."""
-        sys.path.insert(0, str(Path.cwd()))
+        here = str(Path.cwd())
+        sys.path.insert(0, here)
         try:
             self.tracer = getattr(importlib.import_module(self.module), self.attribute)
-        except Exception as error:  # whatever a stranger's module does on import
+        except (Exception, SystemExit) as error:  # whatever a stranger's module does on import
             raise StartError(f"{self.spec}: {type(error).__name__}: {error}") from None
         finally:
-            sys.path.remove(str(Path.cwd()))
+            with contextlib.suppress(ValueError):
+                sys.path.remove(here)
         if not (hasattr(self.tracer, "render") or hasattr(self.tracer, "trace")):
             raise StartError(f"{self.spec} can neither render nor trace", "see `python:` in docs/attaching.md")
 
@@ -97,7 +100,9 @@ class PythonSubject:
             path.write_text(to_json(scene), "utf-8")
             try:
                 values = np.asarray(self._pixels(scene, path), dtype=np.float64)
-            except Exception as error:  # a stranger's code: whatever it raises is its answer
+            except ImageError as error:
+                return Attempt(None, "invalid", str(error), seconds=time.monotonic() - begin)
+            except (Exception, SystemExit) as error:  # a stranger's code: whatever it raises is its answer
                 return Attempt(None, "error", f"{type(error).__name__}: {error}")
         seconds = time.monotonic() - begin
         try:
@@ -117,4 +122,7 @@ class PythonSubject:
         j, i = (index.ravel() for index in np.mgrid[0:height, 0:width])
         v = np.asarray(self.tracer.camera(i, j))
         o = np.broadcast_to(np.asarray(scene.camera.eye), v.shape)
-        return np.asarray(self.tracer.trace(o, v)).reshape(height, width, 3)
+        colours = np.asarray(self.tracer.trace(o, v))
+        if colours.shape != (width * height, 3):
+            raise ImageError(f"trace gives an array of shape {colours.shape}", hint=f"{(width * height, 3)}")
+        return colours.reshape(height, width, 3)

@@ -50,7 +50,8 @@ def fresnel(v: Vec, n: Vec, leaving: Condition, index: Number) -> Number:
     c2 = sqrt0(1.0 - sin2)
     n1 = select(leaving, index, 1.0)
     n2 = select(leaving, 1.0, index)
-    r_s = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2)
-    r_p = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2)
+    s_sum, p_sum = n1 * c1 + n2 * c2, n2 * c1 + n1 * c2
+    r_s = (n1 * c1 - n2 * c2) / select(less(0.0, s_sum), s_sum, 1.0)
+    r_p = (n2 * c1 - n1 * c2) / select(less(0.0, p_sum), p_sum, 1.0)
     F = 0.5 * (r_s * r_s + r_p * r_p)
     return select(at_least(sin2, 1.0), 1.0, F)

@@ -22,10 +22,12 @@ def attenuation(distance: Number, is_inverse: Condition, is_inverse_square: Cond
     """Factor on a light's colour: 1, 1/d or 1/d².
 
     L11 "Light Position": α = func(distance); "three features": inverse proportional to the
-    distance. The scene decides which.
+    distance. The scene decides which. At d = 0 the factor is 1: a light on the surface has no
+    direction there, so nothing of it is seen.
     """
     d = select(is_inverse | is_inverse_square, distance, 1.0)
-    return 1.0 / select(is_inverse_square, d * d, d)
+    divisor = select(is_inverse_square, d * d, d)
+    return 1.0 / select(less(0.0, divisor), divisor, 1.0)
 
 
 def lambert(i: Vec, n: Vec) -> Number:
