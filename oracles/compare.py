@@ -115,7 +115,7 @@ def _sight(lawful: Bounds) -> dict[str, Any]:
 
 
 def _failure(worst: Pixel, count: int, total: int) -> str:
-    times = f"{worst.excess:.3g} times its tolerance" if np.isfinite(worst.excess) else "with no tolerance"
+    times = f"{worst.excess:.3g} times its tolerance" if np.isfinite(worst.excess) else "where none is tolerated"
     unit = "" if worst.unit == "linear" else " codes"
     return (
         f"{count} of {total} pixels lie outside their bound; worst is pixel ({worst.i}, {worst.j}) {worst.channel}: "

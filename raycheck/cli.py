@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from raycheck import VERSION
 from raycheck.errors import BROKEN, CONFORMS, INTERRUPTED, MISUSE, RaycheckError, UsageError
@@ -23,7 +23,10 @@ SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|nu
 
 
 class Parser(argparse.ArgumentParser):
-    """Errors in one line, exit code 2."""
+    """Errors in one line, exit code 2; options are written out."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
 
     def error(self, message: str) -> NoReturn:
         self.exit(MISUSE, f"raycheck: {message} (see {self.prog} --help)\n")
@@ -55,7 +58,9 @@ def parser() -> Parser:
     render = _add(commands, "render", "render a scene with the reference tracer")
     render.add_argument("scene", metavar="SCENE", help="a scene file (.json, .txt) or a name of the catalogue")
     render.add_argument("image", metavar="IMAGE", help="where to; its ending says how: .exr .pfm .ppm .png .npy")
-    render.add_argument("--arithmetic", choices=("plain", "numpy", "drjit"), help="default: the fastest there is")
+    render.add_argument(
+        "--arithmetic", choices=("plain", "numpy", "drjit", "certified", "exact"), help="default: the fastest there is"
+    )
     render.add_argument("--precision", type=int, choices=(32, 64), default=64, help="bits (%(default)s)")
     render.add_argument("--size", metavar="WxH", help="picture size instead of the scene's own")
     render.add_argument("--depth", type=int, metavar="N", help="generations after the eye ray, 0 to 16")
@@ -83,15 +88,14 @@ def _add(commands: argparse._SubParsersAction[Parser], name: str, what: str, mor
 
 def _subject(command: Parser) -> None:
     command.add_argument("subject", nargs="?", metavar="SUBJECT", help="the tracer, see below")
-    command.add_argument("--scene", choices=("text", "json"), default="text", help="scene notation of a -- COMMAND")
+    command.add_argument("--scene", choices=("text", "json"), help="scene notation of a -- COMMAND (text)")
     command.add_argument(
-        "--image", choices=("pfm", "exr", "npy", "ppm", "png"), default="pfm", help="image ending of a -- COMMAND"
+        "--image", choices=("pfm", "exr", "npy", "ppm", "png"), help="image ending of a -- COMMAND (pfm)"
     )
     command.add_argument(
         "--precision",
         choices=("float32", "float64"),
-        default="float32",
-        help="what a -- COMMAND, images or a Python object compute in: tolerances follow from it (%(default)s)",
+        help="what a -- COMMAND, images or a Python object compute in: tolerances follow from it (float32)",
     )
 
 

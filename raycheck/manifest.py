@@ -29,6 +29,7 @@ class Manifest(Frozen):
     name: Annotated[str, Field(min_length=1, max_length=200)]
     build: Words | None = None
     render: Words
+    probe: Words | None = None
     scene: Literal["text", "json"] = "text"
     image: Literal["pfm", "exr", "npy", "ppm", "png"] = "pfm"
     precision: Literal["float32", "float64"] = "float32"

@@ -132,12 +132,13 @@ def make_folder(folder: Path) -> None:
 
 
 def _make_room(folder: Path) -> None:
-    """The folders of a report; raise UsageError if something stands where the report goes."""
+    """The folders of a report, an older report gone; raise UsageError if something stands where it goes."""
     for part in (folder, folder / "images"):
         make_folder(part)
     for name in (results.FILE, junit.FILE, page.FILE):
         if (folder / name).is_dir():
             raise UsageError(f"{folder / name}: a folder is in the way of the report", WRITABLE)
+        (folder / name).unlink(missing_ok=True)
 
 
 def _described(subject: Subject) -> results.Subject:

@@ -14,6 +14,7 @@ import numpy as np
 
 from reference_tracer.image import Image
 from reference_tracer.lanes.tables import rows
+from reference_tracer.numbers import Number
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec
 from scenes.model import Object, PointLight, Scene, Sphere
@@ -32,23 +33,31 @@ class Hit:
 
 
 class PlainTracer:
-    """Traces one scene, one ray at a time."""
+    """Traces one scene, one ray at a time.
 
-    def __init__(self, scene: Scene, rules: Rulebook = LECTURE) -> None:
+    number: what a number of the scene becomes before it is computed with.
+    """
+
+    def __init__(self, scene: Scene, rules: Rulebook = LECTURE, number: Callable[[float], Number] = float) -> None:
         self.scene = scene
         self.rules = rules
+        self.number = number
         self.objects = rows(scene)
+
+    def vec(self, components: tuple[float, float, float]) -> Vec:
+        """A vector or colour of the scene."""
+        return Vec(*(self.number(component) for component in components))
 
     def pixel(self, i: int, j: int) -> Vec:
         """Linear colour of pixel (i, j)."""
-        eye = Vec(*self.scene.camera.eye)
-        return self.find_rgb(eye, self.eye_ray(i, j), None, 0)
+        return self.find_rgb(self.vec(self.scene.camera.eye), self.eye_ray(i, j), None, 0)
 
     def eye_ray(self, i: int, j: int) -> Vec:
         """Unit direction of the ray through pixel (i, j)."""
         image, camera = self.scene.image, self.scene.camera
-        X, Y = self.rules.plane_point(float(i), float(j), float(image.width), float(image.height), image.sample)
-        return self.rules.camera_ray(Vec(*camera.forward), Vec(*camera.right), Vec(*camera.up), X, Y)
+        x, y, width, height, *sample = (self.number(n) for n in (i, j, image.width, image.height, *image.sample))
+        X, Y = self.rules.plane_point(x, y, width, height, sample)
+        return self.rules.camera_ray(self.vec(camera.forward), self.vec(camera.right), self.vec(camera.up), X, Y)
 
     def find_rgb(self, o: Vec, v: Vec, start: int | None, generation: int) -> Vec:
         """Colour seen from o along unit v. L11 "Modified FindRGB" and "Refraction with geo.tr vector".
@@ -57,7 +66,7 @@ class PlainTracer:
         """
         hit = self.nearest(o, v, start)
         if hit is None:
-            return Vec(*self.scene.background)  # L11 "three features": the ray goes astray
+            return self.vec(self.scene.background)  # L11 "three features": the ray goes astray
 
         material = self.scene.materials[hit.thing.material]
         n, leaving = self.rules.face(v, hit.n)
@@ -65,17 +74,17 @@ class PlainTracer:
         if generation == self.scene.depth:
             return local
 
-        reflect, transmit = Vec(*material.reflect), Vec(*material.transmit)
+        reflect, transmit = self.vec(material.reflect), self.vec(material.transmit)
         reflected = transmitted = BLACK
         if any(material.reflect):
             r = self.rules.mirror(-v, n)
             reflected = self.find_rgb(hit.p, r, hit.order, generation + 1)
         if any(material.transmit):
-            t, total = self.rules.refract(v, n, leaving, material.index)
+            t, total = self.rules.refract(v, n, leaving, self.number(material.index))
             if not total:
                 transmitted = self.find_rgb(hit.p, t, hit.order, generation + 1)
         if self.scene.fresnel:
-            F = self.rules.fresnel(v, n, leaving, material.index)
+            F = self.rules.fresnel(v, n, leaving, self.number(material.index))
             reflect, transmit = reflect * F, transmit * (1.0 - F)
         return self.rules.mix(local, reflect, reflected, transmit, transmitted)
 
@@ -96,32 +105,36 @@ class PlainTracer:
         """Distance to one object, and whether the ray meets it."""
         rules = self.rules
         if isinstance(thing, Sphere):
-            c = Vec(*thing.center)
-            return rules.sphere_hit(rules.sphere_distances, o, v, c, thing.radius, starts_here, 0.0)
-        return rules.plane_hit(o, v, Vec(*thing.normal), thing.offset, not starts_here, 0.0)
+            c = self.vec(thing.center)
+            return rules.sphere_hit(rules.sphere_distances, o, v, c, self.number(thing.radius), starts_here, 0.0)
+        return rules.plane_hit(o, v, self.vec(thing.normal), self.number(thing.offset), not starts_here, 0.0)
 
     def normal(self, thing: Object, p: Vec) -> Vec:
         """Outward unit normal of an object at p."""
         if isinstance(thing, Sphere):
-            return self.rules.sphere_normal(p, Vec(*thing.center))
-        return self.rules.plane_normal(Vec(*thing.normal))
+            return self.rules.sphere_normal(p, self.vec(thing.center))
+        return self.rules.plane_normal(self.vec(thing.normal))
 
     def local_colour(self, hit: Hit, n: Vec, v: Vec) -> Vec:
         """Ambient, and the diffuse and specular light of every lamp in view. L11 "Phong Effect"."""
         rules = self.rules
         material = self.scene.materials[hit.thing.material]
-        colour = Vec(*material.ambient)
+        colour = self.vec(material.ambient)
         for light in self.scene.lights:
             is_point = isinstance(light, PointLight)
-            k = Vec(*(light.position if isinstance(light, PointLight) else light.toward))
+            k = self.vec(light.position if isinstance(light, PointLight) else light.toward)
             kind = light.attenuation if isinstance(light, PointLight) else "none"
             i, distance = rules.light_vector(k, hit.p, is_point)
             factor = rules.attenuation(distance, kind == "inverse", kind == "inverse_square")
             cosine = rules.lambert(i, n)
             gloss = rules.phong(i, n, v, material.shininess, rules.reflect(i, n))
-            diffuse, specular = Vec(*material.diffuse), Vec(*material.specular)
-            share = rules.direct_light(Vec(*light.color), factor, diffuse, cosine, specular, gloss)
-            if any(share) and self.scene.shadows and self.shadowed(hit.p, i, distance, hit.order):
+            diffuse, specular = self.vec(material.diffuse), self.vec(material.specular)
+            share = rules.direct_light(self.vec(light.color), factor, diffuse, cosine, specular, gloss)
+            if (
+                self.scene.shadows
+                and any(part != 0.0 for part in share)
+                and self.shadowed(hit.p, i, distance, hit.order)
+            ):
                 continue
             colour = colour + share
         return colour

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from reference_tracer.formulas import camera, display, optics, plane, shading, sphere
-from reference_tracer.numbers import Condition, Number, less
+from reference_tracer.numbers import Condition, Number, at_least, less
 from reference_tracer.vector import Vec
 
 
@@ -22,7 +22,7 @@ def nearer(distance: Number, best: Number, order: Any, best_order: Any) -> Condi
     L11 "Ray Tracing Depth Sorting": the nearest to the viewpoint. `order` is the object's place,
     spheres before planes; without a tie it does not matter.
     """
-    return (distance < best) | ((distance == best) & (order < best_order))
+    return less(distance, best) | (at_least(best, distance) & (order < best_order))
 
 
 def blocks(distance: Number, light_distance: Number) -> Condition:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import stat
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +26,13 @@ def load(path: Path) -> Scene:
 
 def _read_bounded(path: Path) -> str:
     try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # a FIFO must not keep us waiting
+        with os.fdopen(descriptor, "rb") as stream:
+            data = stream.read(MAX_BYTES + 1) if stat.S_ISREG(os.fstat(descriptor).st_mode) else None
     except OSError as error:
         raise SceneError(error.strerror or "cannot be read", str(path), hint="a readable scene file") from None
+    if data is None:
+        raise SceneError("not a regular file", str(path), hint="a readable scene file")
     if len(data) > MAX_BYTES:
         raise SceneError("file too large", str(path), f"over {MAX_BYTES} bytes", f"at most {MAX_BYTES} bytes")
     try:

@@ -129,7 +129,7 @@ class Scene(Frozen):
     shadows: bool
     fresnel: bool = False
     display: Literal["lecture", "srgb"]
-    materials: dict[MaterialName, Material]
+    materials: Annotated[dict[MaterialName, Material], Field(json_schema_extra={"additionalProperties": False})]
     objects: Annotated[tuple[Object, ...], Field(max_length=MAX_OBJECTS)]
     lights: Annotated[tuple[Light, ...], Field(max_length=MAX_LIGHTS)]
 
@@ -169,5 +169,5 @@ class Scene(Frozen):
         return frozenset(found)
 
     def content_hash(self) -> str:
-        """SHA-256 over the canonical JSON: equal scenes, equal hash."""
+        """SHA-256 over the JSON as this version writes it: the same file, the same hash."""
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from oracles.images import exr
 from oracles.images.picture import ENDINGS, ImageError, Picture, check, check_size
 
 HEADER_ROOM = 2**20
@@ -164,39 +165,6 @@ def _npy(data: bytes, expected: Size) -> Picture:
     return Picture(values.astype(np.float64), roundoff=2.0**-24 if dtype.itemsize == 4 else 0.0)
 
 
-def _exr(data: bytes, expected: Size) -> Picture:
-    import OpenEXR
-
-    try:
-        file = OpenEXR.File(io.BytesIO(data), header_only=True)
-        parts, header = len(file.parts), file.header()
-        low, high = header["dataWindow"]
-        width, height = int(high[0]) - int(low[0]) + 1, int(high[1]) - int(low[1]) + 1
-        sampled = {channel.name: (channel.xSampling, channel.ySampling) for channel in header["channels"]}
-        kind = header.get("type", OpenEXR.scanlineimage)
-    except Exception as error:  # whatever the library makes of hostile bytes
-        raise ImageError(f"not an EXR file ({error})", "the header") from None
-    check_size(width, height, expected)
-    if parts != 1:
-        raise ImageError(f"EXR of {parts} parts", "the header", "one part")
-    missing = [name for name in "RGB" if name not in sampled]
-    if missing:
-        raise ImageError(f"channel {missing[0]} is missing (has {', '.join(sampled) or 'none'})", "the header", "R G B")
-    if kind not in (OpenEXR.scanlineimage, OpenEXR.tiledimage) or any(sampled[c] != (1, 1) for c in "RGB"):
-        raise ImageError("deep or subsampled EXR", "the header", "full-resolution scanlines or tiles")
-    if len(sampled) > 16:
-        raise ImageError(f"{len(sampled)} channels", "the header", "R G B")
-    try:
-        channels = OpenEXR.File(io.BytesIO(data), separate_channels=True).channels()
-        planes = [np.asarray(channels[name].pixels) for name in "RGB"]
-    except Exception as error:  # whatever the library makes of hostile bytes
-        raise ImageError(f"truncated or damaged EXR ({error})", "the pixels") from None
-    if any(plane.shape != (height, width) or plane.dtype.kind != "f" for plane in planes):
-        raise ImageError("EXR channels of another size or kind", "the pixels", "half or float")
-    roundoff = max(2.0**-11 if plane.dtype == np.float16 else 2.0**-24 for plane in planes)
-    return Picture(np.stack(planes, axis=-1).astype(np.float64), roundoff=roundoff)
-
-
 def _png(data: bytes, expected: Size) -> Picture:
     import png
 
@@ -254,6 +222,6 @@ _DECODERS: dict[str, Callable[[bytes, Size], Picture]] = {
     "pfm": _pfm,
     "ppm": _ppm,
     "npy": _npy,
-    "exr": _exr,
+    "exr": exr.decode,
     "png": _png,
 }

@@ -39,8 +39,8 @@ def repeat_line(options: Namespace) -> str:
     words = ["check"]
     if options.subject is not None:
         words.append(options.subject)
-    for name, default in (("scene", "text"), ("image", "pfm"), ("precision", "float32")):
-        if getattr(options, name) != default:
+    for name in ("scene", "image", "precision"):
+        if getattr(options, name) is not None:
             words += [f"--{name}", getattr(options, name)]
     if options.size:
         words += ["--size", options.size]

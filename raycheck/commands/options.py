@@ -21,10 +21,24 @@ def subject_of(options: Namespace) -> Subject:
     if options.tracer is None and options.subject is None:
         raise UsageError("no tracer is given", "a SUBJECT, or a command after --")
     if options.subject is not None:
-        return attach(options.subject, options.precision)
+        return _attached(options)
     if not options.tracer:
         raise UsageError("no command follows --", "for example -- ./tracer {scene} {image}")
-    return attach_command(options.tracer, options.scene, options.image, options.precision)
+    return attach_command(
+        options.tracer, options.scene or "text", options.image or "pfm", options.precision or "float32"
+    )
+
+
+def _attached(options: Namespace) -> Subject:
+    """A SUBJECT; options that it states itself must not be given."""
+    own = ("scene", "image") if options.subject.startswith(("images:", "python:")) else ("scene", "image", "precision")
+    for name in own:
+        if getattr(options, name) is not None:
+            where = "raycheck.toml" if Path(options.subject).is_dir() else "SUBJECT"
+            raise UsageError(
+                f"--{name} {getattr(options, name)} does not go with {options.subject}", f"{where} says it"
+            )
+    return attach(options.subject, options.precision or "float32")
 
 
 def command_line(options: Namespace) -> str:

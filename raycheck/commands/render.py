@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
 from pathlib import Path
+
+import numpy as np
 
 from oracles.images import ENDINGS, ImageError, write
 from raycheck.commands.options import scene_of, size_of
@@ -50,8 +53,28 @@ def _scene(options: Namespace) -> Scene:
 
 
 def _image(scene: Scene, arithmetic: str, precision: int, progress: Progress) -> Image:
-    if arithmetic != "plain":
+    if arithmetic in ("numpy", "drjit"):
         return lanes.render(scene, lanes.backend(arithmetic, precision), progress=progress.share)
     if precision != 64:
-        raise UsageError("the plain tracer computes in 64 bits", "--arithmetic numpy or drjit for 32")
-    return plain.render(scene, progress=progress.share)
+        raise UsageError(f"the {arithmetic} tracer computes in 64 bits or more", "--arithmetic numpy or drjit for 32")
+    if arithmetic == "plain":
+        return plain.render(scene, progress=progress.share)
+    return _certified(scene, arithmetic, progress)
+
+
+def _certified(scene: Scene, arithmetic: str, progress: Progress) -> Image:
+    """An image with its proof, of which the proof is told on stderr."""
+    from reference_tracer import certified
+
+    if arithmetic == "exact":
+        found = certified.render_exact(scene, progress=progress.share)
+    else:
+        found = certified.render(scene, lanes.backend(best_lanes(), 64), progress=progress.share)
+    progress.close()
+    open_pixels = int((~found.decided).sum())
+    print(
+        f"{scene.name}: every value proved to {found.bound.max():.2g} (median {np.median(found.bound):.2g}), "
+        f"at most {found.bits.max()} bits, {open_pixels} pixels are hulls of undecided branches",
+        file=sys.stderr,
+    )
+    return Image(found.value)

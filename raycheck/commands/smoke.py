@@ -15,13 +15,12 @@ from scenes.model import Scene
 from scenes.text import to_text
 
 SCENE = "pixel-centre"
-SIZE = (16, 12)
 
 
 def run(options: Namespace) -> int:
     """Show what goes out, what comes back, and what that means."""
     subject = subject_of(options)
-    scene = rung(SCENE).scene().resized(*SIZE)
+    scene = rung(SCENE).scene()
     print(f"# tracer: {subject.name} (computes in {subject.precision})")
     subject.prepare()
     if subject.scene_form in ("text", "json"):

@@ -16,8 +16,9 @@ def plane_hit(
     """
     toward = dot(normal, v)
     crosses = less(toward, 0.0) | less(0.0, toward)
-    distance = (offset - dot(normal, o)) / select(crosses, toward, 1.0)
-    return distance, crosses & starts_elsewhere & less(start, distance)
+    root = (offset - dot(normal, o)) / select(crosses, toward, 1.0)
+    distance = select(starts_elsewhere, root, -1.0)
+    return distance, crosses & less(start, distance)
 
 
 def plane_normal(normal: Vec) -> Vec:

@@ -37,8 +37,9 @@ def sphere_hit(
     b = o - c
     bv = dot(b, v)
     near, far, D = distances(b, bv, v, r)
-    other = select(less(start, near), near, far)
-    distance = select(starts_here, -(bv + bv), other)
+    chord = -(bv + bv)
+    first, last = select(starts_here, chord, near), select(starts_here, chord, far)
+    distance = select(less(start, first), first, last)
     return distance, (at_least(D, 0.0) | starts_here) & less(start, distance)
 
 

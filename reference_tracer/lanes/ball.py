@@ -5,6 +5,11 @@ own rounding, so a ball holds each result that any evaluation with relative
 error u an operation may give. The midpoint is computed by the same operations
 as the plain lanes, so it is their result, bit for bit.
 
+The radius itself is computed in float64. INFLATE covers the rounding of that
+computation, TINY what underflows in it or is flushed to zero; a radius of 0 means
+that the value is exact, and only exact zeros and exact scene numbers have it. The
+proofs are in docs/tolerance.md.
+
 An undecided comparison is a `Doubtful`: its value is the branch the midpoint
 takes, `sure` says where the other branch is impossible. `select` on it returns
 the hull of both branches; a bool context raises.
@@ -12,7 +17,7 @@ the hull of both branches; a bool context raises.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from reference_tracer import numbers
 
@@ -58,32 +63,51 @@ class Doubtful:
         return self.value | ~self.sure
 
 
-class Ball:
-    """mid ± rad at unit roundoff u."""
+class Precision(NamedTuple):
+    """Of the tracer that is enclosed: unit roundoff u, and what one operation may lose by underflow."""
 
-    __slots__ = ("mid", "rad", "u")
+    u: Any
+    tiny: Any
+
+
+class Ball:
+    """mid ± rad for a tracer of that precision."""
+
+    __slots__ = ("mid", "precision", "rad")
     __array_ufunc__ = None
 
-    def __init__(self, mid: Any, rad: Any, u: Any) -> None:
+    def __init__(self, mid: Any, rad: Any, precision: Precision) -> None:
         self.mid = mid
         self.rad = rad
-        self.u = u
+        self.precision = precision
 
     @property
     def parts(self) -> tuple[Any, Any]:
         return (self.mid, self.rad)
 
     def with_parts(self, parts: tuple[Any, Any]) -> Ball:
-        return Ball(*parts, self.u)
+        return Ball(*parts, self.precision)
 
     def _other(self, other: Any) -> Ball:
-        return other if isinstance(other, Ball) else Ball(other, 0.0, self.u)
+        return other if isinstance(other, Ball) else Ball(other, 0.0, self.precision)
 
     def _rounded(self, mid: Any, rad: Any) -> Ball:
-        return Ball(mid, rad + _abs(mid) * self.u, self.u)
+        """The result of a sum, a difference or a root, which never underflow."""
+        rad = rad + _abs(mid) * self.precision.u
+        return Ball(mid, numbers.select(rad > 0.0, (rad + self.precision.tiny) * INFLATE, 0.0), self.precision)
+
+    def _scaled(self, mid: Any, rad: Any, exact: Any) -> Ball:
+        """The result of a product or a quotient, which may underflow unless it is exactly 0."""
+        rad = (rad + (_abs(mid) * self.precision.u + self.precision.tiny)) * INFLATE
+        return Ball(mid, numbers.select(exact, 0.0, rad), self.precision)
+
+    @property
+    def _nothing(self) -> Any:
+        """Where the value is exactly 0."""
+        return (self.mid == 0.0) & (self.rad == 0.0)
 
     def __neg__(self) -> Ball:
-        return Ball(-self.mid, self.rad, self.u)
+        return Ball(-self.mid, self.rad, self.precision)
 
     def __add__(self, other: Any) -> Ball:
         b = self._other(other)
@@ -98,17 +122,18 @@ class Ball:
 
     def __mul__(self, other: Any) -> Ball:
         if isinstance(other, float):  # an exact factor of the formulas: 2, 0.5
-            return self._rounded(self.mid * other, self.rad * abs(other))
+            return self._scaled(self.mid * other, self.rad * abs(other), self._nothing)
         b = self._other(other)
-        return self._rounded(self.mid * b.mid, _abs(self.mid) * b.rad + self.rad * (_abs(b.mid) + b.rad))
+        rad = _abs(self.mid) * b.rad + self.rad * (_abs(b.mid) + b.rad)
+        return self._scaled(self.mid * b.mid, rad, self._nothing | b._nothing)
 
     def __truediv__(self, other: Any) -> Ball:
         # |x/y - X/Y| <= (rx + |x/y| ry) / (|y| - ry), unbounded where Y may be 0
         b = self._other(other)
         mid = self.mid / b.mid
-        room = _abs(b.mid) - b.rad
+        room = _abs(b.mid) * DEFLATE - b.rad
         reach = (self.rad + _abs(mid) * b.rad) / numbers.select(room > 0.0, room, 1.0)
-        return self._rounded(mid, numbers.select(room > 0.0, reach, INFINITY))
+        return self._scaled(mid, numbers.select(room > 0.0, reach, INFINITY), self._nothing & (room > 0.0))
 
     def __rtruediv__(self, other: Any) -> Ball:
         return self._other(other) / self
@@ -118,14 +143,27 @@ class Ball:
 
     @property
     def lower(self) -> Any:
-        return self.mid - self.rad
+        """At most every value of the ball."""
+        return self.mid - (self.rad * INFLATE + _abs(self.mid) * EDGE)
 
     @property
     def upper(self) -> Any:
-        return self.mid + self.rad
+        """At least every value of the ball."""
+        return self.mid + (self.rad * INFLATE + _abs(self.mid) * EDGE)
 
 
 INFINITY = float("inf")
+INFLATE = 1.0 + 2.0**-48
+"""At most 16 float64 roundings, each of 2^-53, go into a radius: (1 + 2^-53)^16 < 1 + 2^-48."""
+DEFLATE = 1.0 - 2.0**-48
+EDGE = 2.0**-51
+"""mid ± rad is rounded once: by less than 2^-51 of |mid| and 2^-48 of rad."""
+NORMAL = 1e-140
+"""Vectors longer than this have a length whose square does not underflow."""
+UNDERFLOW_64 = 1e-300
+"""10^7 times the smallest normal number: what underflows or is flushed to zero in one operation."""
+UNDERFLOW_32 = 1e-36
+"""The same for float32: its smallest normal number is 1.2e-38."""
 
 
 def _abs(x: Any) -> Any:
@@ -142,14 +180,14 @@ class BallOperations:
     rank = 3
 
     def _pair(self, a: Any, b: Any) -> tuple[Ball, Ball]:
-        u = a.u if isinstance(a, Ball) else b.u
-        return tuple(x if isinstance(x, Ball) else Ball(x, 0.0, u) for x in (a, b))  # type: ignore[return-value]
+        precision = a.precision if isinstance(a, Ball) else b.precision
+        return tuple(x if isinstance(x, Ball) else Ball(x, 0.0, precision) for x in (a, b))  # type: ignore[return-value]
 
     def _compared(self, a: Any, b: Any, value: Any) -> Doubtful:
         # Certain when the balls are apart; also when both are points, so that a tie of exact
         # values (a ray exactly parallel to a plane) is decided.
         gap, reach = a.mid - b.mid, a.rad + b.rad
-        return Doubtful(value, (_abs(gap) > reach) | (reach == 0.0))
+        return Doubtful(value, (_abs(gap) > reach * INFLATE) | (reach == 0.0))
 
     def less(self, a: Any, b: Any) -> Doubtful:
         a, b = self._pair(a, b)
@@ -162,7 +200,7 @@ class BallOperations:
     def select(self, condition: Any, a: Any, b: Any) -> Any:
         if not isinstance(condition, Doubtful):
             a, b = self._pair(a, b)
-            return Ball(numbers.select(condition, a.mid, b.mid), numbers.select(condition, a.rad, b.rad), a.u)
+            return Ball(numbers.select(condition, a.mid, b.mid), numbers.select(condition, a.rad, b.rad), a.precision)
         if not (isinstance(a, Ball) or isinstance(b, Ball)):
             raise TypeError("an undecided selection needs a ball on one side")
         a, b = self._pair(a, b)
@@ -171,7 +209,7 @@ class BallOperations:
         rad = numbers.select(value, a.rad, b.rad)
         other = numbers.select(value, b.mid, a.mid)
         hull = _max(rad, _abs(other - mid) + numbers.select(value, b.rad, a.rad))
-        return Ball(mid, numbers.select(condition.sure, rad, hull), a.u)
+        return Ball(mid, numbers.select(condition.sure, rad, hull * INFLATE), a.precision)
 
     def sqrt0(self, x: Ball) -> Ball:
         # The root of [lo, hi] clipped at 0; s - sqrt(lo) = (x - lo)/(s + sqrt(lo)) without cancellation.
@@ -185,7 +223,7 @@ class BallOperations:
         return x._rounded(s, _max(below, above))
 
     def clamp0(self, x: Ball) -> Ball:
-        return Ball(numbers.clamp0(x.mid), x.rad, x.u)  # 1-Lipschitz
+        return Ball(numbers.clamp0(x.mid), x.rad, x.precision)  # 1-Lipschitz
 
     def power(self, x: Ball, n: Any) -> Ball:
         # t -> t^n is increasing, so the bounds of the ball go through the same chain; each of its
@@ -193,15 +231,19 @@ class BallOperations:
         mid = numbers.power(x.mid, n)
         high = numbers.power(x.upper, n)
         low = numbers.power(numbers.clamp0(x.lower), n)
-        roundings = 2.0 * x.u * (n if isinstance(n, float | int) else _like(x.mid, n))
-        return Ball(mid, _max(high - mid, mid - low) + high * roundings, x.u)
+        times = n if isinstance(n, float | int) else _like(x.mid, n)
+        # 2nu for the tracer's chain; 2n·2^-53 for each of the three computed here
+        rad = _max(high - mid, mid - low) + high * ((2.0 * x.precision.u + 8.0 * 2.0**-53) * times)
+        return Ball(mid, numbers.select(x.upper > 0.0, (rad + x.precision.tiny) * INFLATE, 0.0), x.precision)
 
     def sum3(self, a: Any, b: Any, c: Any) -> Any:
         # Partial sums of any order stay below |a|+|b|+|c|: two roundings of that size.
         first = next(x for x in (a, b, c) if isinstance(x, Ball))
-        a, b, c = (x if isinstance(x, Ball) else Ball(x, 0.0, first.u) for x in (a, b, c))
+        a, b, c = (x if isinstance(x, Ball) else Ball(x, 0.0, first.precision) for x in (a, b, c))
         size = (_abs(a.mid) + _abs(b.mid)) + _abs(c.mid)
-        return Ball((a.mid + b.mid) + c.mid, ((a.rad + b.rad) + c.rad) + size * (2.0 * first.u), first.u)
+        rad = ((a.rad + b.rad) + c.rad) + size * (2.0 * first.precision.u)
+        rad = numbers.select(rad > 0.0, (rad + first.precision.tiny) * INFLATE, 0.0)
+        return Ball((a.mid + b.mid) + c.mid, rad, first.precision)
 
     def unit3(self, x: Any, y: Any, z: Any) -> tuple[Ball, Ball, Ball]:
         """Mean value form: the derivative of a/|a| is (1 - n n')/|a|, so errors along n fall away.
@@ -211,20 +253,21 @@ class BallOperations:
         right to 2.5u and the quotient adds u; 5u covers both.
         """
         first = next(a for a in (x, y, z) if isinstance(a, Ball))
-        a = [part if isinstance(part, Ball) else Ball(part, 0.0, first.u) for part in (x, y, z)]
+        a = [part if isinstance(part, Ball) else Ball(part, 0.0, first.precision) for part in (x, y, z)]
         n = numbers.unit3(*(part.mid for part in a))
         size = numbers.sqrt0(numbers.sum3(*(part.mid * part.mid for part in a)))
         spread = (a[0].rad + a[1].rad) + a[2].rad
-        room = size - spread
-        safe = room > 0.0
+        room = size * DEFLATE - spread * INFLATE
+        safe = room > NORMAL
         room = numbers.select(safe, room, 1.0)
         e = spread / room
         result = []
         for k in range(3):
             slopes = [_abs((1.0 if j == k else 0.0) - n[k] * n[j]) * a[j].rad for j in range(3)]
             moved = ((slopes[0] + slopes[1]) + slopes[2] + (2.0 * e + e * e) * spread) / room
-            rad = moved + _abs(n[k]) * (5.0 * first.u)
-            result.append(Ball(n[k], numbers.select(safe, rad, 2.0), first.u))
+            rad = moved + _abs(n[k]) * (5.0 * first.precision.u)
+            rad = numbers.select(a[k]._nothing, 0.0, (rad + first.precision.tiny) * INFLATE)
+            result.append(Ball(n[k], numbers.select(safe, rad, 2.0), first.precision))
         return result[0], result[1], result[2]
 
 

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from reference_tracer.lanes.backend import Backend
-from reference_tracer.lanes.ball import INFINITY, Ball, Doubtful
+from reference_tracer.lanes.ball import INFINITY, UNDERFLOW_32, UNDERFLOW_64, Ball, Doubtful, Precision
 from reference_tracer.lanes.floats import Nearest
 from reference_tracer.numbers import select
 from reference_tracer.rulebook import Rulebook
@@ -19,6 +19,8 @@ from reference_tracer.vector import Vec
 from scenes.model import Light, Material, PointLight, Scene, Sphere
 
 HIT = 1
+SMALL = 1e-100
+"""Scene numbers below this are not trusted to multiply without underflow."""
 
 
 class Balls:
@@ -29,20 +31,24 @@ class Balls:
     """
 
     def __init__(self, u: float, scene: Scene, lanes: Backend, single: bool, offset: float) -> None:
-        self.u = lanes.scalar(u)
+        tiny = UNDERFLOW_32 if single else UNDERFLOW_64
+        self.precision = Precision(lanes.scalar(u), lanes.scalar(tiny))
         self.inputs = lanes.to_single if single else _as_given
         self.offset = lanes.scalar(offset)
         self.brightest = [[lanes.scalar(top) for top in tops] for tops in brightest(scene)]
 
     def read(self, array: Any) -> Ball:
+        """A number of the scene as the tracer reads it; one that nearly underflows counts as unknown."""
         gap = array - self.inputs(array)
-        return Ball(array, select(gap < 0.0, -gap, gap), self.u)
+        size = select(array < 0.0, -array, array)
+        rad = select(gap < 0.0, -gap, gap)
+        return Ball(array, select((size < SMALL) & (array != 0.0), size + SMALL, rad), self.precision)
 
     def exact(self, array: Any) -> Ball:
-        return Ball(array, array - array, self.u)
+        return Ball(array, array - array, self.precision)
 
     def start(self) -> Ball:
-        return Ball(0.0, self.offset, self.u)
+        return Ball(0.0, self.offset, self.precision)
 
     def midpoint(self, condition: Doubtful) -> Any:
         return condition.value
@@ -51,13 +57,13 @@ class Balls:
         return condition.value & condition.sure
 
     def matters(self, colour: Vec) -> Any:
-        x, y, z = ((part.mid != 0.0) | (part.rad != 0.0) for part in colour)
-        return x | y | z
+        """Where a midpoint is not 0: elsewhere the ball holds black already."""
+        return (colour.x.mid != 0.0) | (colour.y.mid != 0.0) | (colour.z.mid != 0.0)
 
     def none_yet(self, real: Any, integer: Any) -> Any:
         """Best hit, its row, whether it certainly exists, and the nearest that might beat it."""
         no = integer != 0
-        return (Ball(real + INFINITY, real, self.u), integer - 1, no, real + INFINITY)
+        return (Ball(real + INFINITY, real, self.precision), integer - 1, no, real + INFINITY)
 
     def consider(self, state: Any, rules: Rulebook, distance: Ball, meets: Doubtful, row: Any) -> Any:
         best, best_row, certain, rival = state
@@ -102,7 +108,7 @@ class Balls:
         """The ball cut to [0, top]; all of [0, top] where lost."""
         room = select(colour.mid > top - colour.mid, colour.mid, top - colour.mid)
         known = ~lost & (colour.rad < room)
-        return Ball(colour.mid, select(known, colour.rad, room), self.u)
+        return Ball(colour.mid, select(known, colour.rad, room), self.precision)
 
 
 def _as_given(array: Any) -> Any:

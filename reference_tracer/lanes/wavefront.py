@@ -180,7 +180,7 @@ class Wavefront:
             lit = hit & self.numbers.matters(share)
             blocked = self.shadowed(surface.p, i, distance, row, lit)
             doubts = self.numbers.doubt(doubts, SHADOW, blocked, lit)
-            seen = Vec(*(select(blocked, 0.0, part) for part in share))
+            seen = Vec(*(select(lit, select(blocked, 0.0, part), part) for part in share))
             return (colour + seen, doubts)
 
         ambient = self._vec("ambient", row)

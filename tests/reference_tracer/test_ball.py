@@ -10,16 +10,18 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from reference_tracer import numbers
-from reference_tracer.lanes.ball import Ball, Doubtful
+from reference_tracer.lanes.ball import Ball, Doubtful, Precision
 
 U32 = 2.0**-24
+FLOAT32 = Precision(U32, 1e-300)  # no underflow in these ranges
+EXACT = Precision(0.0, 0.0)
 values = st.floats(-1e3, 1e3, allow_subnormal=False)
 radii = st.floats(0, 10, allow_subnormal=False)
 shares = st.floats(-1, 1)
 
 
-def ball(mid, rad, u=U32):
-    return Ball(np.array([mid]), np.array([rad]), u)
+def ball(mid, rad):
+    return Ball(np.array([mid]), np.array([rad]), FLOAT32)
 
 
 def inside(value, result, slack=Fraction(1, 10**9)):
@@ -111,13 +113,13 @@ def test_an_undecided_selection_is_the_hull_of_both_branches(x, rx, y, ry, z, rz
 def test_the_midpoint_is_the_float_result():
     a, b = np.random.default_rng(0).standard_normal((2, 100))
     for operation in OPERATIONS.values():
-        assert (operation(Ball(a, a * 0, U32), Ball(b, b * 0, U32)).mid == operation(a, b)).all()
+        assert (operation(Ball(a, a * 0, FLOAT32), Ball(b, b * 0, FLOAT32)).mid == operation(a, b)).all()
 
 
 def test_without_widening_balls_lose_float32_results():
     a, b = np.random.default_rng(0).standard_normal((2, 1000)).astype(np.float32)
-    exact = Ball(a.astype(float), np.zeros(1000), 0.0) * Ball(b.astype(float), np.zeros(1000), 0.0)
-    widened = Ball(a.astype(float), np.zeros(1000), U32) * Ball(b.astype(float), np.zeros(1000), U32)
+    exact = Ball(a.astype(float), np.zeros(1000), EXACT) * Ball(b.astype(float), np.zeros(1000), EXACT)
+    widened = Ball(a.astype(float), np.zeros(1000), FLOAT32) * Ball(b.astype(float), np.zeros(1000), FLOAT32)
     got = (a * b).astype(float)
     assert (np.abs(got - exact.mid) > exact.rad).any()
     assert (np.abs(got - widened.mid) <= widened.rad).all()

@@ -36,15 +36,6 @@ def test_a_rung_requires_only_earlier_rungs_each_once(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_rung_requires_nothing_that_another_requirement_requires_already(name: str) -> None:
-    def below(one: str) -> set[str]:
-        return {deeper for need in rung(one).requires for deeper in ({need} | below(need))}
-
-    needs = rung(name).requires
-    assert not [need for need in needs if any(need in below(other) for other in needs)]
-
-
-@pytest.mark.parametrize("name", NAMES)
 def test_a_rung_teaches_one_idea_from_a_slide_with_a_formula(name: str) -> None:
     assert rung(name).teaches
     assert formula_of(rung(name).slide)

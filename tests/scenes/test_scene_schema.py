@@ -66,7 +66,7 @@ MUTATIONS: list[tuple[tuple[str | int, ...], Any]] = [
     (("shadows",), 1),
     (("display",), "gamma"),
     (("materials",), []),
-    (("materials", "a b"), {}),
+    (("materials", "red", "unknown"), 1),
     (("materials", "floor", "index"), 0),
     (("materials", "floor", "shininess"), 0),
     (("materials", "floor", "ambient", 0), -0.1),
@@ -87,6 +87,13 @@ def test_the_schema_rejects_a_wrong_value(path: tuple[str | int, ...], value: An
     for step in path[:-1]:
         inner = inner[step]
     inner[path[-1]] = value
+    assert not accepts(data)
+
+
+@pytest.mark.parametrize("name", ["a b", "", "é"])
+def test_the_schema_rejects_a_material_name_that_the_model_rejects(name: str) -> None:
+    data: Any = file_of("lecture-final")
+    data["materials"][name] = {}
     assert not accepts(data)
 
 
