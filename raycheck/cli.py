@@ -65,6 +65,23 @@ def parser() -> Parser:
     render.add_argument("--size", metavar="WxH", help="picture size instead of the scene's own")
     render.add_argument("--depth", type=int, metavar="N", help="generations after the eye ray, 0 to 16")
 
+    golden = _add(commands, "golden", "make golden images with certified bounds, or verify that they still stand")
+    golden.add_argument("action", choices=("make", "verify"), help="what to do")
+    golden.add_argument("folder", metavar="DIR", help="where the goldens are")
+    golden.add_argument("--scenes", metavar="A,B", help="make: only these scenes of the catalogue")
+    golden.add_argument("--size", metavar="WxH", help="make: picture size instead of each scene's own")
+    golden.add_argument("--jobs", type=int, default=1, metavar="N", help="make: processes at work (%(default)s)")
+
+    compare = _add(commands, "compare", "compare one image with one golden")
+    compare.add_argument("image", metavar="IMAGE", help="any ending a tracer may write")
+    compare.add_argument("golden", metavar="GOLDEN", help="a file of the golden, for example goldens/glass-sphere.exr")
+    compare.add_argument(
+        "--precision",
+        choices=("32", "64", "8bit"),
+        default="32",
+        help="what the image was computed in; 8bit: compare as displayed (%(default)s)",
+    )
+
     scenes = _add(commands, "scenes", "list the catalogue, or print one scene")
     scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
     scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")

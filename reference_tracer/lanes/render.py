@@ -14,7 +14,7 @@ from reference_tracer.lanes.backend import Backend, leaves
 from reference_tracer.lanes.balls import Balls
 from reference_tracer.lanes.floats import Floats, Numbers
 from reference_tracer.lanes.numpy_backend import NumPyBackend
-from reference_tracer.lanes.tables import Tables
+from reference_tracer.lanes.tables import Tables, rows
 from reference_tracer.lanes.wavefront import Wavefront
 from reference_tracer.rulebook import LECTURE, Rulebook
 from scenes.model import Scene
@@ -73,6 +73,31 @@ def enclose(
     mids, radii, doubts = columns[0:6:2], columns[1:6:2], columns[6]
     height, width = scene.image.height, scene.image.width
     return Enclosure(_picture(scene, mids), _picture(scene, radii), doubts.reshape(height, width).astype(np.int64))
+
+
+@dataclass(frozen=True)
+class FirstHits:
+    """What each eye ray meets first: distance (inf: nothing), outward normal, the object's place in the scene (-1)."""
+
+    distance: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    thing: NDArray[np.int64]
+
+
+def first_hits(scene: Scene, rules: Rulebook = LECTURE) -> FirstHits:
+    """The first hits of all eye rays, on NumPy float64 lanes."""
+    lanes = NumPyBackend(64)
+    front = Wavefront(scene, rules, lanes, Floats(), Tables(scene, lanes))
+    height, width = scene.image.height, scene.image.width
+    with np.errstate(all="ignore"):
+        distance, normal, row = front.first_hits(0, width * height)
+    order = [scene.objects.index(thing) for thing in rows(scene)] or [-1]
+    thing = np.where(row >= 0, np.array(order)[np.maximum(row, 0)], -1)
+    return FirstHits(
+        distance.reshape(height, width),
+        np.stack(normal, axis=-1).reshape(height, width, 3),
+        thing.reshape(height, width),
+    )
 
 
 def _picture(scene: Scene, columns: list[NDArray[Any]]) -> NDArray[Any]:

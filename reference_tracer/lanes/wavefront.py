@@ -68,6 +68,16 @@ class Wavefront:
         at_eye = each(eye, lambda array: array + self.backend.to_real(pixel - pixel))
         return Rays(at_eye, v, pixel - pixel - 1)
 
+    def first_hits(self, begin: int, end: int) -> tuple[Array, Vec, Array]:
+        """Distance, outward normal and row of what the eye rays of these pixels meet; inf, 0 and -1 for nothing."""
+        rays = self.eye_rays(self.backend.indices(begin, end))
+        nearest, _ = self.nearest(rays)
+        hit = nearest.row >= 0
+        row = select(hit, nearest.row, rays.start - rays.start)
+        normal = self._normal(rays.o + rays.v * select(hit, nearest.distance, 1.0), row)
+        black = each(normal, lambda array: self.backend.zeros(array))
+        return nearest.distance, select_vec(hit, normal, black), nearest.row
+
     def trace(self, rays: Rays, generation: int) -> tuple[Vec, Any]:
         """Colours of these rays and of all that follows from them. The plain tracer's find_rgb."""
         # Meet the objects; the same kernel serves every generation of every scene

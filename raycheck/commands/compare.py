@@ -1,0 +1,48 @@
+"""raycheck compare: one image against one golden."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from oracles.compare import compare
+from oracles.golden import GoldenError, load
+from oracles.images import ImageError, Picture, read
+from oracles.truth import DOUBTS, truth
+from raycheck.errors import CONFORMS, DIFFERS, UsageError
+from raycheck.lanes import best_lanes
+from reference_tracer.formulas.display import encode
+
+PRECISIONS = {"32": "float32", "64": "float64", "8bit": "float32"}
+
+
+def run(options: Namespace) -> int:
+    """Judge, and tell every number."""
+    try:
+        golden = load(Path(options.golden))
+        picture = read(Path(options.image), golden.scene.image.width, golden.scene.image.height)
+    except GoldenError as error:
+        raise UsageError(str(error)) from None
+    except ImageError as error:
+        print(f"invalid: {options.image}: {error}")
+        return DIFFERS
+    if options.precision == "8bit" and picture.maximum is None:
+        picture = Picture(encode(picture.values, golden.scene.display).astype(np.float64), 255)
+    expected = truth(golden.scene, PRECISIONS[options.precision], best_lanes())
+    # The tolerance was taken about the lanes' value; the golden lies within its own bound of it
+    reach = expected.tolerance + np.abs(expected.pixels - golden.value) + golden.bound
+    found = compare(picture, replace(expected, pixels=golden.value, tolerance=reach))
+    judged, worst = found.judged, found.judged.worst
+    print(f"{found.word}: {found.message}")
+    if worst:
+        place = f"pixel ({worst.i}, {worst.j}) {worst.channel}"
+        numbers = f"expected {worst.expected:.9g} ± {worst.tolerance:.3g}, got {worst.got:.9g}"
+        print(f"worst: {place}: {numbers} ({worst.unit}), {worst.excess:.3g} of its tolerance")
+    doubts = ", ".join(f"{words} {judged.doubtful[words]}" for words in DOUBTS.values() if words in judged.doubtful)
+    print(f"pixels: {judged.outside} of {judged.pixels} outside, in doubt: {doubts or 'none'}")
+    seen = f"median {judged.tolerance_median:.3g}, 99 % {judged.tolerance_99:.3g}, worst {judged.tolerance_worst:.3g}"
+    print(f"tolerance: {seen}")
+    return CONFORMS if found.word == "pass" else DIFFERS
