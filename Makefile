@@ -39,8 +39,8 @@ constraints:
 
 # The published schemas, from the models.
 schemas: $(READY)
-	$(BIN)/python -P -c "from pathlib import Path; from scenes import text; from reports import results; \
-	  Path('scenes/schema/scene-1.json').write_text(text.schema()); \
+	$(BIN)/python -P -c "from pathlib import Path; from scenes import json_form; from reports import results; \
+	  Path('scenes/schema/scene-1.json').write_text(json_form.schema()); \
 	  Path('reports/schema/results-1.json').write_text(results.schema())"
 
 clean:

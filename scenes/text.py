@@ -6,13 +6,12 @@ which `# source ...` carries the scene's source so that JSON → text → JSON i
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
 from scenes.errors import SceneError
-from scenes.files import from_data
+from scenes.json_form import from_data
 from scenes.model import DirectionalLight, Material, Object, PointLight, Scene, Sphere
 
 _SOURCE = "# source "
@@ -225,8 +224,3 @@ _BODY: dict[str, Callable[[list[str]], dict[str, Any]]] = {
     "point": lambda w: {"kind": "point", "position": _vector(w[:3]), "color": _vector(w[3:6]), "attenuation": w[6]},
     "directional": lambda w: {"kind": "directional", "toward": _vector(w[:3]), "color": _vector(w[3:])},
 }
-
-
-def schema() -> str:
-    """The published JSON Schema of the scene format, as committed in scenes/schema/."""
-    return json.dumps(Scene.model_json_schema(), indent=2) + "\n"

@@ -28,7 +28,7 @@ from oracles.images.writing import png_bytes
 from reference_tracer import certified
 from reference_tracer.formulas.display import encode
 from reference_tracer.lanes import render as lanes
-from scenes.files import to_json
+from scenes.json_form import to_json
 from scenes.model import Scene
 
 Told = Callable[[str, int, int], Any]

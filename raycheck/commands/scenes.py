@@ -7,7 +7,7 @@ from argparse import Namespace
 from raycheck.commands.options import scene_of
 from raycheck.errors import CONFORMS
 from scenes.catalogue import ladder
-from scenes.files import to_json
+from scenes.json_form import to_json
 from scenes.text import to_text
 
 

@@ -10,7 +10,7 @@ from raycheck.commands.options import subject_of
 from raycheck.errors import CONFORMS, DIFFERS
 from raycheck.subjects import Attempt, Subject
 from scenes.catalogue import rung
-from scenes.files import to_json
+from scenes.json_form import to_json
 from scenes.model import Scene
 from scenes.text import to_text
 

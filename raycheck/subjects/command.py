@@ -13,7 +13,7 @@ from raycheck.errors import StartError, UsageError
 from raycheck.manifest import Manifest
 from raycheck.subjects.subject import Attempt, Problem
 from raycheck.workspace import workspace
-from scenes.files import to_json
+from scenes.json_form import to_json
 from scenes.model import Scene
 from scenes.text import to_text
 

@@ -19,7 +19,7 @@ from raycheck.lanes import best_lanes
 from raycheck.subjects.subject import Attempt
 from reference_tracer import plain
 from reference_tracer.lanes import render as lanes
-from scenes.files import to_json
+from scenes.json_form import to_json
 from scenes.model import Scene
 
 ARITHMETICS = ("plain", "numpy", "drjit")

@@ -8,7 +8,7 @@ from functools import cache
 from importlib import resources
 
 from scenes.errors import SceneError
-from scenes.files import from_json
+from scenes.json_form import from_json
 from scenes.model import Scene
 
 

@@ -18,7 +18,7 @@ from oracles.truth import Truth, truth
 from reference_tracer.formulas.display import encode
 from reference_tracer.lanes.render import backend, render
 from scenes.catalogue import ladder, rung
-from scenes.files import from_data
+from scenes.json_form import from_data
 from scenes.model import Scene
 
 NAMES = [entry.name for entry in ladder()]

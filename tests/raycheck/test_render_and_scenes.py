@@ -14,7 +14,8 @@ from reference_tracer import plain
 from reference_tracer.formulas.display import encode
 from reports import results
 from scenes.catalogue import ladder, rung
-from scenes.files import from_json, load, to_json
+from scenes.files import load
+from scenes.json_form import from_json, to_json
 from scenes.text import from_text, to_text
 
 Raycheck = Callable[..., Any]

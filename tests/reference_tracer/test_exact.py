@@ -13,7 +13,7 @@ from reference_tracer.numbers import at_least, less, select, sqrt0
 from reference_tracer.rulebook import LECTURE
 from reference_tracer.vector import dot
 from scenes.catalogue import ladder, rung
-from scenes.files import from_data
+from scenes.json_form import from_data
 
 NAMES = [entry.name for entry in ladder()]
 needs_llvm = pytest.mark.skipif(llvm.find() is None, reason=f"no libLLVM that works: {llvm.REMEDY}")

@@ -12,7 +12,7 @@ from reference_tracer.lanes import render as lanes
 from reference_tracer.rulebook import LECTURE
 from reference_tracer.vector import Vec, unit
 from scenes.catalogue import ladder, rung
-from scenes.files import from_data
+from scenes.json_form import from_data
 
 needs_llvm = pytest.mark.skipif(llvm.find() is None, reason=f"no libLLVM that works: {llvm.REMEDY}")
 BACKENDS = ["numpy", pytest.param("drjit", marks=needs_llvm)]

@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenes.errors import SceneError
-from scenes.files import MAX_BYTES, from_json, load
+from scenes.files import MAX_BYTES, load
+from scenes.json_form import from_json
 from scenes.model import MAX_LIGHTS, MAX_OBJECTS
 from scenes.text import from_text
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from scenes.catalogue import rung
-from scenes.files import from_data
+from scenes.json_form import from_data
 from scenes.model import Scene
 
 

@@ -11,7 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from scenes.catalogue import ladder
-from scenes.files import from_json, load, to_json
+from scenes.files import load
+from scenes.json_form import from_json, to_json
 from scenes.model import (
     Camera,
     DirectionalLight,

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from scenes.catalogue import ladder
-from scenes.text import schema
+from scenes.json_form import schema
 
 NAMES = [rung.name for rung in ladder()]
 
