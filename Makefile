@@ -21,6 +21,8 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/render_speed.py
 	$(BIN)/python -P benchmarks/bit_for_bit.py
 	$(BIN)/python -P benchmarks/suite_overhead.py
+	$(BIN)/python -P benchmarks/sensitivity.py
+	$(BIN)/python -P benchmarks/containment.py
 
 setup: $(READY)
 
