@@ -44,14 +44,17 @@ def parser() -> Parser:
     check = _add(commands, "check", "run the conformance suite against a tracer", SUBJECT)
     _subject(check)
     check.add_argument("--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes)")
-    check.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own")
+    check.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")
     check.add_argument("--out", default="raycheck-report", metavar="DIR", help="where the report goes (%(default)s)")
     check.add_argument("--seed", type=int, default=0, metavar="N", help="handed to the tracer as {seed} (%(default)s)")
     check.add_argument("--known", metavar="FILE", help="TOML list of known failures: [[known]] check, reason, url")
     check.add_argument("--no-block", action="store_true", help="ask every rung, even where one it builds on failed")
 
     smoke = _add(
-        commands, "smoke", "one small scene, with everything sent and received: why does my adapter fail?", SUBJECT
+        commands,
+        "smoke",
+        "show one small scene with everything sent and received, to find out why an adapter fails",
+        SUBJECT,
     )
     _subject(smoke)
 
@@ -62,7 +65,7 @@ def parser() -> Parser:
         "--arithmetic", choices=("plain", "numpy", "drjit", "certified", "exact"), help="default: the fastest there is"
     )
     render.add_argument("--precision", type=int, choices=(32, 64), default=64, help="bits (%(default)s)")
-    render.add_argument("--size", metavar="WxH", help="picture size instead of the scene's own")
+    render.add_argument("--size", metavar="WxH", help="picture size instead of the scene's own; pixels stay square")
     render.add_argument("--depth", type=int, metavar="N", help="generations after the eye ray, 0 to 16")
 
     golden = _add(commands, "golden", "make golden images with certified bounds, or verify that they still stand")
@@ -164,7 +167,14 @@ def _flush() -> None:
 
 def _broken(error: Exception) -> int:
     """An error that no one foresaw is a bug of ours, and said to be one."""
+    import errno
+
     from scenes.errors import SceneError
+
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what is left in the buffer has nowhere to go
+        print(f"raycheck: cannot write: {error.strerror}; make room and run it again", file=sys.stderr)
+        return MISUSE
 
     if isinstance(error, SceneError):
         print(f"raycheck: {error}", file=sys.stderr)

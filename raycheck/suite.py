@@ -124,7 +124,9 @@ def _asked(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path
         pictures = _keep(images, rung.name, expected, None, None)
     else:
         comparison = compare(attempt.picture, expected)
-        verdict = _start(rung, plan, comparison.word, comparison.message)
+        linear = expected.scene.display == "srgb" and attempt.picture.maximum is None
+        more = "; a linear image is not asked for its display encoding" if linear else ""
+        verdict = _start(rung, plan, comparison.word, comparison.message + more)
         verdict = verdict.model_copy(update={"judged": comparison.judged})
         pictures = _keep(images, rung.name, expected, attempt.picture, comparison)
     return verdict.model_copy(update=_evidence(attempt) | {"pictures": pictures})

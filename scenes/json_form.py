@@ -66,7 +66,9 @@ _WORDS = {
 
 def _explain(error: ValidationError, origin: str) -> SceneError:
     """The first problem as file: path: what (got value); expected ..."""
-    first = error.errors(include_url=False)[0]
+    problems = error.errors(include_url=False)
+    # A misspelt key is both unknown and missing: the unknown one is what its author can see
+    first = next((problem for problem in problems if problem["type"] == "extra_forbidden"), problems[0])
     kind = first["type"]
     path = _path(first["loc"]) or "scene"
     context = first.get("ctx") or {}

@@ -18,7 +18,7 @@
 #define REAL float
 #endif
 #ifndef EPSILON
-#define EPSILON 1e-3
+#define EPSILON 2e-3
 #endif
 using real = REAL;
 const real EPS = real(EPSILON);  // nearer hits are taken for the surface the ray starts on

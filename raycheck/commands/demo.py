@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from argparse import Namespace
 from pathlib import Path
@@ -29,7 +30,7 @@ def run(options: Namespace) -> int:
             seed=0,
             block=False,  # so that every slip of the wrong one shows
             known=Known({}),
-            command="raycheck demo",
+            command=f"raycheck check {shlex.quote(str(folder))} --no-block",
             repeat=session.repeat_line(["check", str(folder)], []),
         )
         found, code = session.check(order)
