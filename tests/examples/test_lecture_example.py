@@ -38,7 +38,7 @@ def test_the_lecture_example_in_double_passes_every_rung_at_float64(
     assert not_passed(found) == {}
 
 
-@pytest.mark.parametrize("step", ["7e-4", "2e-3", "5e-3"])
+@pytest.mark.parametrize("step", ["7e-4", "1e-3", "2e-3"])
 def test_the_lecture_example_passes_with_another_step_off_the_surface(
     compiled: Callable[..., Path], tmp_path: Path, step: str
 ) -> None:
@@ -54,6 +54,14 @@ def test_a_step_too_small_for_float32_makes_acne_that_is_seen(compiled: Callable
     # docs/tolerance.md, "Where a ray starts": acne-free from about L·sqrt(8u) on, some 1e-3 in these scenes
     found = checked(compiled("cpp_lecture", "-DEPSILON=1e-4"), tmp_path / "out")
     assert {v.check for v in found.verdicts if v.verdict == "fail"} == {"image/shadow-hard"}
+
+
+def test_a_step_beyond_what_float32_needs_leaks_light_where_a_wall_meets_the_floor(
+    compiled: Callable[..., Path], tmp_path: Path
+) -> None:
+    # L·sqrt(8u) is 2.1e-3 in shadow-wall: a step of 2e-3 is lawful there, one of 5e-3 skips the wall
+    found = checked(compiled("cpp_lecture", "-DEPSILON=5e-3"), tmp_path / "out")
+    assert {v.check for v in found.verdicts if v.verdict == "fail"} == {"image/shadow-wall"}
 
 
 def test_the_lecture_example_in_float_fails_as_soon_as_it_claims_float64(
