@@ -14,8 +14,9 @@ import resource
 import selectors
 import signal
 import subprocess
+import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,25 +68,47 @@ def run(
 ) -> Ended:
     """Run a command (never through a shell) to its end or its bounds; raise OSError if it cannot start."""
     begin = time.monotonic()
-    child = subprocess.Popen(
-        list(command),
-        cwd=cwd,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        start_new_session=True,
-        env=dict(environment or own_environment()),
-    )
+    child: subprocess.Popen[bytes] | None = None
     try:
+        with _interrupts_held():
+            child = subprocess.Popen(
+                list(command),
+                cwd=cwd,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                env=dict(environment or own_environment()),
+            )
         _limit(child.pid, file_limit)
         how, tail = _watch(child, begin + timeout)
     finally:
-        _kill(child)
+        if child is not None:
+            _kill(child)
     seconds = time.monotonic() - begin
     code = child.returncode
     if how == "ended":
         how = "signal" if code < 0 else "exited"
     return Ended(how, abs(code), seconds, clean(tail))
+
+
+@contextlib.contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Let SIGINT and SIGTERM wait: one that struck while a child starts would leave it running, known to nobody."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    waiting: list[int] = []
+    usual = {
+        number: signal.signal(number, lambda n, _: waiting.append(n)) for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield
+    finally:
+        for number, handler in usual.items():
+            signal.signal(number, handler)
+    if waiting:
+        signal.raise_signal(waiting[0])
 
 
 def own_environment() -> dict[str, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -234,3 +235,20 @@ def test_an_interrupt_while_we_wait_ends_the_program(tmp_path: Path, monkeypatch
         python("import time; time.sleep(60)", tmp_path)
     assert soon(pids[0])
     assert zombies_of_ours() == []
+
+
+def test_an_interrupt_while_the_program_starts_waits_until_it_can_be_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[subprocess.Popen[bytes]] = []
+
+    class Struck(subprocess.Popen):  # type: ignore[type-arg]
+        def __init__(self, *arguments: object, **options: object) -> None:
+            super().__init__(*arguments, **options)  # type: ignore[call-overload]
+            started.append(self)
+            signal.raise_signal(signal.SIGINT)  # before anybody holds the child
+
+    monkeypatch.setattr(process.subprocess, "Popen", Struck)
+    with pytest.raises(KeyboardInterrupt):
+        process.run([sys.executable, "-c", "import time; time.sleep(60)"], tmp_path, 30.0, 2**20)
+    assert started[0].returncode == -signal.SIGKILL
