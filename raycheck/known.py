@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from oracles.verdict import Verdict
 from raycheck.errors import UsageError
+from scenes.disk import read_bounded
 
 MAX_BYTES = 2**20
 Said = Annotated[str, Field(min_length=1)]
@@ -57,12 +58,9 @@ def load(path: Path | None, checks: set[str]) -> Known:
     if path is None:
         return Known({})
     try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
+        data = read_bounded(path, MAX_BYTES)
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}", "a TOML file of [[known]] entries") from None
-    if len(data) > MAX_BYTES:
-        raise UsageError(f"{path}: over {MAX_BYTES} bytes", "a TOML file of [[known]] entries")
     try:
         entries = _File.model_validate(tomllib.loads(data.decode("utf-8"))).known
     except ValidationError as error:

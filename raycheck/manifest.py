@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from raycheck.errors import UsageError
+from scenes.disk import read_bounded
 
 FILE = "raycheck.toml"
 MAX_BYTES = 2**16
@@ -45,13 +46,10 @@ def load(folder: Path) -> Manifest:
     """Read and validate a tracer's manifest; raise UsageError naming file, key and value."""
     path = folder / FILE
     try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
+        data = read_bounded(path, MAX_BYTES)
     except OSError as error:
         hint = "a tracer's folder holds a raycheck.toml, or give its command after --"
         raise UsageError(f"{path}: {error.strerror}", hint) from None
-    if len(data) > MAX_BYTES:
-        raise UsageError(f"{path}: over {MAX_BYTES} bytes", "a manifest of a few lines")
     try:
         return _File.model_validate(tomllib.loads(data.decode("utf-8"))).tracer
     except ValidationError as error:

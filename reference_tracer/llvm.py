@@ -19,6 +19,8 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
+from scenes.disk import write_whole
+
 FOLDERS = (
     "/usr/lib",
     "/usr/lib64",
@@ -129,8 +131,6 @@ def _memory() -> dict[str, bool]:
 def _remember(memory: dict[str, bool]) -> None:
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
-        temporary = cache_folder() / f"llvm.{os.getpid()}.tmp"
-        temporary.write_text(json.dumps(memory), "utf-8")
-        temporary.replace(cache_folder() / "llvm.json")
+        write_whole(cache_folder() / "llvm.json", json.dumps(memory).encode())
     except OSError:
         pass  # a cache that cannot be written costs half a second the next time

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from reference_tracer.image import Image
-from reference_tracer.lanes.tables import rows
 from reference_tracer.numbers import Number
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec
@@ -42,7 +41,7 @@ class PlainTracer:
         self.scene = scene
         self.rules = rules
         self.number = number
-        self.objects = rows(scene)
+        self.objects = [scene.objects[k] for k in scene.tie_order]
 
     def vec(self, components: tuple[float, float, float]) -> Vec:
         """A vector or colour of the scene."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,6 +9,7 @@ from xml.etree import ElementTree
 from oracles.verdict import Judged, Verdict, Word
 from reports import conclusion, format, plain
 from reports.results import Results
+from scenes.disk import write_whole
 
 FILE = "junit.xml"
 
@@ -31,9 +31,7 @@ ELEMENTS: dict[Word, str] = {
 def write(results: Results, folder: Path) -> Path:
     """Write junit.xml whole or not at all; return its path."""
     path = folder / FILE
-    temporary = folder / f".{FILE}.{os.getpid()}.tmp"
-    temporary.write_bytes(document(results))
-    temporary.replace(path)
+    write_whole(path, document(results))
     return path
 
 

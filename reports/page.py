@@ -6,7 +6,6 @@ embedded pictures. What came from the tracer is text: made plain, bounded, escap
 
 from __future__ import annotations
 
-import os
 import re
 from base64 import b64encode
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from oracles.verdict import Pixel, Verdict, Word
 from reports import conclusion, format, plain
 from reports.pictures import Picture, gallery
 from reports.results import Results
+from scenes.disk import write_whole
 
 FILE = "index.html"
 
@@ -63,9 +63,7 @@ class Entry:
 def write(results: Results, folder: Path) -> Path:
     """Write index.html whole or not at all; return its path."""
     path = folder / FILE
-    temporary = folder / f".{FILE}.{os.getpid()}.tmp"
-    temporary.write_bytes(render(results, folder).encode())
-    temporary.replace(path)
+    write_whole(path, render(results, folder).encode())
     return path
 
 

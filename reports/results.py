@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Literal
 
 from pydantic import ValidationError
 
 from oracles.verdict import CONFORMING, Frozen, Verdict
+from scenes.disk import read_bounded, write_whole
 
 FILE = "results.json"
 MAX_BYTES = 64 * 2**20
@@ -85,9 +85,7 @@ class ResultsError(Exception):
 def write(results: Results, folder: Path) -> Path:
     """Write results.json whole or not at all; return its path."""
     path = folder / FILE
-    temporary = folder / f".{FILE}.{os.getpid()}.tmp"
-    temporary.write_text(results.model_dump_json(indent=1) + "\n", "utf-8")
-    temporary.replace(path)
+    write_whole(path, (results.model_dump_json(indent=1) + "\n").encode())
     return path
 
 
@@ -95,12 +93,9 @@ def read(folder: Path) -> Results:
     """Read and validate results.json of a report folder."""
     path = folder / FILE
     try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
+        data = read_bounded(path, MAX_BYTES)
     except OSError as error:
         raise ResultsError(f"{path}: {error.strerror}; expected a folder written by `raycheck check`") from None
-    if len(data) > MAX_BYTES:
-        raise ResultsError(f"{path}: over {MAX_BYTES} bytes")
     try:
         return Results.model_validate_json(data)
     except ValidationError as error:

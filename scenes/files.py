@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import stat
 from pathlib import Path
 
+from scenes.disk import TooLargeError, read_bounded
 from scenes.errors import SceneError
 from scenes.json_form import from_json
 from scenes.model import Scene
@@ -24,15 +23,11 @@ def load(path: Path) -> Scene:
 
 def _read_bounded(path: Path) -> str:
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # a FIFO must not keep us waiting
-        with os.fdopen(descriptor, "rb") as stream:
-            data = stream.read(MAX_BYTES + 1) if stat.S_ISREG(os.fstat(descriptor).st_mode) else None
+        data = read_bounded(path, MAX_BYTES)
+    except TooLargeError as error:
+        raise SceneError("file too large", str(path), str(error.strerror), f"at most {MAX_BYTES} bytes") from None
     except OSError as error:
         raise SceneError(error.strerror or "cannot be read", str(path), hint="a readable scene file") from None
-    if data is None:
-        raise SceneError("not a regular file", str(path), hint="a readable scene file")
-    if len(data) > MAX_BYTES:
-        raise SceneError("file too large", str(path), f"over {MAX_BYTES} bytes", f"at most {MAX_BYTES} bytes")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:

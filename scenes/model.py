@@ -154,6 +154,11 @@ class Scene(Frozen):
         return self.model_copy(update={"depth": depth})
 
     @property
+    def tie_order(self) -> tuple[int, ...]:
+        """Places of the objects in the order in which equal distances are decided: spheres, then planes."""
+        return tuple(sorted(range(len(self.objects)), key=lambda k: not isinstance(self.objects[k], Sphere)))
+
+    @property
     def features(self) -> frozenset[str]:
         """Features a tracer needs for this scene, in the manifest's words."""
         used = [self.materials[thing.material] for thing in self.objects]

@@ -50,7 +50,8 @@ def test_imports_point_down_only(path: Path) -> None:
 @pytest.mark.parametrize("path", [p for p in SOURCES if p.is_relative_to(ROOT / "reports")], ids=name_of)
 def test_reports_judge_nothing_they_know_only_verdicts(path: Path) -> None:
     lower = [m for m in imports(path) if m.split(".")[0] in ("oracles", "reference_tracer", "scenes")]
-    assert [m for m in lower if not m.startswith("oracles.verdict")] == []
+    # scenes.disk reads and writes files; it knows nothing of scenes
+    assert [m for m in lower if not m.startswith(("oracles.verdict", "scenes.disk"))] == []
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)

@@ -22,12 +22,12 @@ from oracles.golden.record import (
     hash_of,
     read_manifest,
     write_manifest,
-    write_whole,
 )
 from oracles.images.writing import png_bytes
 from reference_tracer import certified
 from reference_tracer.formulas.display import encode
 from reference_tracer.lanes import render as lanes
+from scenes.disk import write_whole
 from scenes.json_form import to_json
 from scenes.model import Scene
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from oracles.verdict import Frozen
+from scenes.disk import read_bounded, write_whole
 from scenes.errors import SceneError
 from scenes.files import load as load_scene
 from scenes.model import Scene
@@ -69,26 +69,15 @@ def hash_of(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def write_whole(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(data)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
 def read_manifest(folder: Path) -> Manifest:
     """The manifest of a folder; raise GoldenError if there is none that this version reads."""
     path = folder / MANIFEST
     try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_MANIFEST + 1)
+        data = read_bounded(path, MAX_MANIFEST)
     except OSError as error:
         raise GoldenError(f"{path}: {error.strerror}; expected a folder written by `raycheck golden make`") from None
     try:
-        return Manifest.model_validate_json(data[:MAX_MANIFEST])
+        return Manifest.model_validate_json(data)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(str(part) for part in first["loc"]) or "the file"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from oracles.images.picture import ENDINGS, ImageError
 from reference_tracer.formulas.display import encode
+from scenes.disk import write_whole
 
 Pixels = NDArray[np.floating[Any]]
 
@@ -25,12 +26,7 @@ def write(path: Path, pixels: Pixels, display: str) -> None:
     encoder = _ENCODERS.get(path.suffix.removeprefix("."))
     if encoder is None:
         raise ImageError(f"unknown image ending {path.suffix!r}", str(path), ", ".join("." + e for e in ENDINGS))
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(encoder(pixels, display))
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    write_whole(path, encoder(pixels, display))
 
 
 def png_bytes(codes: NDArray[np.integer[Any]]) -> bytes:

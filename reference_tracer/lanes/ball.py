@@ -181,7 +181,8 @@ class BallOperations:
 
     def _pair(self, a: Any, b: Any) -> tuple[Ball, Ball]:
         precision = a.precision if isinstance(a, Ball) else b.precision
-        return tuple(x if isinstance(x, Ball) else Ball(x, 0.0, precision) for x in (a, b))  # type: ignore[return-value]
+        one, other = (x if isinstance(x, Ball) else Ball(x, 0.0, precision) for x in (a, b))
+        return one, other
 
     def _compared(self, a: Any, b: Any, value: Any) -> Doubtful:
         # Certain when the balls are apart; also when both are points, so that a tie of exact

@@ -14,7 +14,7 @@ from reference_tracer.lanes.backend import Backend, leaves
 from reference_tracer.lanes.balls import Balls
 from reference_tracer.lanes.floats import Floats, Numbers
 from reference_tracer.lanes.numpy_backend import NumPyBackend
-from reference_tracer.lanes.tables import Tables, rows
+from reference_tracer.lanes.tables import Tables
 from reference_tracer.lanes.wavefront import Wavefront
 from reference_tracer.rulebook import LECTURE, Rulebook
 from scenes.model import Scene
@@ -91,7 +91,7 @@ def first_hits(scene: Scene, rules: Rulebook = LECTURE) -> FirstHits:
     height, width = scene.image.height, scene.image.width
     with np.errstate(all="ignore"):
         distance, normal, row = front.first_hits(0, width * height)
-    order = [scene.objects.index(thing) for thing in rows(scene)] or [-1]
+    order = scene.tie_order or (-1,)
     thing = np.where(row >= 0, np.array(order)[np.maximum(row, 0)], -1)
     return FirstHits(
         distance.reshape(height, width),

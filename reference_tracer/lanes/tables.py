@@ -18,7 +18,7 @@ class Tables:
     """
 
     def __init__(self, scene: Scene, backend: Backend) -> None:
-        things = rows(scene)
+        things = [scene.objects[k] for k in scene.tie_order]
         self.spheres = sum(isinstance(thing, Sphere) for thing in things)
         self.planes = len(things) - self.spheres
         self.lights = len(scene.lights)
@@ -35,11 +35,6 @@ class Tables:
                 "attenuation": [_attenuation(light) for light in scene.lights],
             }.items()
         }
-
-
-def rows(scene: Scene) -> list[Object]:
-    """The objects in the order in which ties are decided: spheres, then planes."""
-    return sorted(scene.objects, key=lambda thing: not isinstance(thing, Sphere))
 
 
 def _objects(things: list[Object], materials: list[Material]) -> dict[str, list[Packet]]:

@@ -21,7 +21,6 @@ from oracles.images import Picture
 from oracles.truth import Truth, truth
 from raycheck.cli import main
 from reference_tracer.lanes import render as lanes
-from reference_tracer.lanes.tables import rows
 from reference_tracer.numbers import at_least, sqrt0
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec, dot, select_vec, unit
@@ -35,7 +34,7 @@ def last_one_wins(rules: Rulebook, scene: Scene) -> Rulebook:
 
     The tracer's rows are sorted, spheres first; `place` is the scene's order again, -1 that of no hit.
     """
-    place = np.array([*(next(k for k, t in enumerate(scene.objects) if t is row) for row in rows(scene)), -1])
+    place = np.array([*scene.tie_order, -1])
     return replace(rules, nearer=lambda distance, best, order, best_order: place[order] > place[best_order])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -138,6 +139,13 @@ def test_a_huge_manifest_is_exit_2_and_names_the_file(raycheck: Raycheck, manife
     told = raycheck("check", manifest(NAMED + RENDER + "#" * MAX_BYTES))
     assert told.code == 2
     assert "raycheck.toml: over" in told.err
+
+
+def test_a_pipe_as_manifest_is_exit_2_and_not_waited_for(raycheck: Raycheck, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "raycheck.toml")
+    told = raycheck("check", tmp_path)
+    assert told.code == 2
+    assert "raycheck.toml: not a regular file" in told.err
 
 
 def test_a_manifest_that_is_not_utf_8_is_exit_2(raycheck: Raycheck, tmp_path: Path) -> None:

@@ -87,13 +87,17 @@ def test_the_normal_turns_to_face_the_ray():
 
 @pytest.mark.parametrize(("index", "share"), [(1.5, 0.04), (1.33, (0.33 / 2.33) ** 2), (2.42, (1.42 / 3.42) ** 2)])
 def test_fresnel_at_normal_incidence_is_the_squared_contrast(index, share):
-    assert fresnel(Vec(0.0, -1.0, 0.0), UP, False, index) == pytest.approx(share, rel=1e-14)
+    assert fresnel(Vec(0.0, -1.0, 0.0), UP, False, index) == pytest.approx(
+        share, rel=32 * U
+    )  # some ten roundings, doubled by squares
 
 
 def test_fresnel_at_brewsters_angle_has_only_the_s_half():
     n = 1.5
     theta = math.atan(n)
-    assert fresnel(at_angle(theta), UP, False, n) == pytest.approx(((1 - n * n) / (1 + n * n)) ** 2 / 2, rel=1e-13)
+    assert fresnel(at_angle(theta), UP, False, n) == pytest.approx(
+        ((1 - n * n) / (1 + n * n)) ** 2 / 2, rel=512 * U
+    )  # the angle is rounded; F changes by a few times that
 
 
 def test_fresnel_is_one_under_total_reflection():
@@ -139,7 +143,7 @@ def test_the_highlight_peaks_in_the_mirror_direction():
 def test_the_highlight_at_sixty_degrees_is_a_half_to_the_s():
     i = Vec(0.0, 1.0, 0.0)
     v = Vec(-math.sin(math.pi / 3), -math.cos(math.pi / 3), 0.0)
-    assert phong(i, UP, v, 10, i) == pytest.approx(0.5**10, rel=1e-14)
+    assert phong(i, UP, v, 10, i) == pytest.approx(0.5**10, rel=64 * U)  # ten times the cosine's own few u
 
 
 def test_one_lights_share_is_weighted_channel_by_channel():
