@@ -175,3 +175,13 @@ def test_progress_goes_up_to_one():
     plain.render(rung("pixel-centre").scene(), progress=told.append)
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("u", [2.0**-23, 2.0**-53])
+@needs_llvm
+def test_numpy_and_drjit_enclose_alike_to_the_last_bit(name, u):
+    scene = rung(name).scene().resized(80, 60)
+    numpy, drjit = (lanes.enclose(scene, lanes.backend(kind, 64), u, 1e-3) for kind in ("numpy", "drjit"))
+    assert (numpy.radius.view(np.uint64) == drjit.radius.view(np.uint64)).all()
+    assert (numpy.doubts == drjit.doubts).all()
