@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from reference_tracer.numbers import Number, Unit3, less, register, select
+from reference_tracer.numbers import Number, Composed, less, register, select
 from reference_tracer.plain import PlainTracer
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec, dot
@@ -67,7 +67,7 @@ class Decisions:
 DECISIONS = Decisions()
 
 
-class ArbOperations(Unit3):
+class ArbOperations(Composed):
     """Formulas on arb."""
 
     rank = 4
@@ -101,6 +101,9 @@ class ArbOperations(Unit3):
 
     def sum3(self, a: Any, b: Any, c: Any) -> Any:
         return (a + b) + c
+
+    def over_pi(self, x: Any) -> Any:
+        return x / arb.pi()
 
 
 register(ArbOperations(), arb)

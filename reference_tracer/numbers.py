@@ -45,12 +45,18 @@ class Operations(Protocol):
     def sum3(self, a: Number, b: Number, c: Number) -> Number:
         """(a + b) + c."""
 
+    def over_pi(self, x: Number) -> Number:
+        """x/π."""
+
     def unit3(self, x: Number, y: Number, z: Number) -> tuple[Number, Number, Number]:
         """The unit vector of (x, y, z); zero stays zero."""
 
 
-class Unit3:
-    """The unit vector of three components, for types whose own operations say it all."""
+class Composed:
+    """Operations made of the others, for types that need no better."""
+
+    def over_pi(self, x: Number) -> Number:
+        return x * (1.0 / math.pi)
 
     def unit3(self, x: Number, y: Number, z: Number) -> tuple[Number, Number, Number]:
         size = sqrt0(sum3(x * x, y * y, z * z))
@@ -58,7 +64,7 @@ class Unit3:
         return x / size, y / size, z / size
 
 
-class PlainOperations(Unit3):
+class PlainOperations(Composed):
     """Python floats."""
 
     rank = 0
@@ -149,6 +155,11 @@ def power(x: Number, n: Any) -> Number:
 def sum3(a: Number, b: Number, c: Number) -> Number:
     """(a + b) + c; balls bound every order of summation and a fused product alike."""
     return _of_types(type(a), type(b), type(c)).sum3(a, b, c)
+
+
+def over_pi(x: Number) -> Number:
+    """x/π."""
+    return _of_types(type(x)).over_pi(x)
 
 
 def unit3(x: Number, y: Number, z: Number) -> tuple[Number, Number, Number]:

@@ -21,6 +21,11 @@ from scenes.model import Object, PointLight, Scene, Sphere
 BLACK = Vec(0.0, 0.0, 0.0)
 
 
+def black(colour: Vec) -> bool:
+    """Whether a colour is 0 for certain."""
+    return all(part == 0.0 for part in colour)
+
+
 @dataclass(frozen=True)
 class Hit:
     """The nearest object on a ray, where, and the object's outward normal there."""
@@ -63,29 +68,35 @@ class PlainTracer:
 
         start: the object (its place in self.objects) that the ray starts on.
         """
+        rules = self.rules
         hit = self.nearest(o, v, start)
+        background = self.vec(self.scene.background)
         if hit is None:
-            return self.vec(self.scene.background)  # L11 "three features": the ray goes astray
+            return rules.seen(background)  # L11 "three features": the ray goes astray
 
+        # The light on the surface, and where the ray goes on
         material = self.scene.materials[hit.thing.material]
-        n, leaving = self.rules.face(v, hit.n)
-        local = self.local_colour(hit, n, v)
-        if generation == self.scene.depth:
-            return local
+        index = self.number(material.index)
+        n, leaving = rules.face(v, hit.n)
+        local = self.local_colour(hit, rules.shading_normal(n, leaving), v)
+        t, total = rules.refract(v, n, leaving, index) if any(material.transmit) else (v, False)
+        reflect, transmit = rules.weights(
+            self.vec(material.reflect),
+            self.vec(material.transmit),
+            total,
+            self.scene.fresnel,
+            lambda: rules.fresnel(v, n, leaving, index),
+        )
+        if generation == rules.generations(self.scene.depth):
+            return rules.seen(rules.last(local, reflect, transmit, background))
 
-        reflect, transmit = self.vec(material.reflect), self.vec(material.transmit)
+        # Follow the branches whose weight is not 0
         reflected = transmitted = BLACK
-        if any(material.reflect):
-            r = self.rules.mirror(-v, n)
-            reflected = self.find_rgb(hit.p, r, hit.order, generation + 1)
-        if any(material.transmit):
-            t, total = self.rules.refract(v, n, leaving, self.number(material.index))
-            if not total:
-                transmitted = self.find_rgb(hit.p, t, hit.order, generation + 1)
-        if self.scene.fresnel:
-            F = self.rules.fresnel(v, n, leaving, self.number(material.index))
-            reflect, transmit = reflect * F, transmit * (1.0 - F)
-        return self.rules.mix(local, reflect, reflected, transmit, transmitted)
+        if not black(reflect):
+            reflected = self.find_rgb(hit.p, rules.mirror(-v, n), hit.order, generation + 1)
+        if not black(transmit):
+            transmitted = self.find_rgb(hit.p, t, hit.order, generation + 1)
+        return rules.seen(rules.mix(local, reflect, reflected, transmit, transmitted))
 
     def nearest(self, o: Vec, v: Vec, start: int | None) -> Hit | None:
         """The first object along the ray. L11 "Ray Tracing Depth Sorting"."""
@@ -118,7 +129,8 @@ class PlainTracer:
         """Ambient, and the diffuse and specular light of every lamp in view. L11 "Phong Effect"."""
         rules = self.rules
         material = self.scene.materials[hit.thing.material]
-        colour = self.vec(material.ambient)
+        ambient = self.vec(material.ambient)
+        colour = rules.ambient_light(ambient)
         for light in self.scene.lights:
             is_point = isinstance(light, PointLight)
             k = self.vec(light.position if isinstance(light, PointLight) else light.toward)
@@ -128,21 +140,19 @@ class PlainTracer:
             cosine = rules.lambert(i, n)
             gloss = rules.phong(i, n, v, material.shininess, rules.reflect(i, n))
             diffuse, specular = self.vec(material.diffuse), self.vec(material.specular)
-            share = rules.direct_light(self.vec(light.color), factor, diffuse, cosine, specular, gloss)
-            if (
-                self.scene.shadows
-                and any(part != 0.0 for part in share)
-                and self.shadowed(hit.p, i, distance, hit.order)
-            ):
-                continue
-            colour = colour + share
+            terms = (self.vec(light.color), factor, diffuse, cosine, specular, gloss)
+            share = rules.direct_light(*terms)
+            if self.scene.shadows and not black(share) and self.shadowed(hit.p, i, distance, hit.order):
+                share = rules.shaded_light(*terms)
+            colour = rules.add_light(colour, share, ambient, self.vec(light.color))
         return colour
 
     def shadowed(self, p: Vec, i: Vec, light_distance: float, start: int) -> bool:
         """Does anything stand strictly between p and the light? L11 "Example of Ray Tracing"."""
         for order, thing in enumerate(self.objects):
             distance, meets = self.meet(p, i, thing, order == start)
-            if meets and self.rules.blocks(distance, light_distance):
+            opaque = not any(self.scene.materials[thing.material].transmit)
+            if meets and self.rules.blocks(distance, light_distance, opaque):
                 return True
         return False
 

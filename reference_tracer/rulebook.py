@@ -1,8 +1,8 @@
 """The frozen record of formulas a tracer runs by.
 
 A method of the accuracy-speed chart is a rulebook with another sphere or
-refraction formula; a fault is a rulebook with one entry replaced by a wrong one.
-Neither ever puts a flag into a tracer.
+refraction formula; a dialect is one with other lawful conventions; a fault is one
+with an entry replaced by a wrong one. None ever puts a flag into a tracer.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ def nearer(distance: Number, best: Number, order: Any, best_order: Any) -> Condi
     return less(distance, best) | (at_least(best, distance) & (order < best_order))
 
 
-def blocks(distance: Number, light_distance: Number) -> Condition:
-    """Where a surface at `distance` stands strictly between the point and the light."""
+def blocks(distance: Number, light_distance: Number, opaque: Condition) -> Condition:
+    """Where a surface at `distance` stands strictly between the point and the light; transparent ones block too."""
     return less(distance, light_distance)
 
 
@@ -36,6 +36,21 @@ def mix(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transmitted: Ve
     L11 "Refraction with geo.tr vector".
     """
     return (local + reflect * reflected) + transmit * transmitted
+
+
+def last(local: Vec, reflect: Vec, transmit: Vec, background: Vec) -> Vec:
+    """Colour of a ray of the last generation: what lies beyond is worth nothing."""
+    return local
+
+
+def generations(depth: int) -> int:
+    """How many generations follow the eye ray. L11 "Ray Tracing has three features": the depth limit."""
+    return depth
+
+
+def seen(colour: Vec) -> Vec:
+    """What a ray brings back of the colour it found: all, unclamped."""
+    return colour
 
 
 @dataclass(frozen=True)
@@ -56,13 +71,21 @@ class Rulebook:
     mirror: Callable[[Vec, Vec], Vec] = optics.reflect
     refract: Callable[..., tuple[Vec, Condition]] = optics.refract
     fresnel: Callable[..., Number] = optics.fresnel
+    shading_normal: Callable[[Vec, Condition], Vec] = optics.shading_normal
+    weights: Callable[..., tuple[Vec, Vec]] = optics.weights
     light_vector: Callable[..., tuple[Vec, Number]] = shading.light_vector
     attenuation: Callable[..., Number] = shading.attenuation
     lambert: Callable[[Vec, Vec], Number] = shading.lambert
     phong: Callable[..., Number] = shading.phong
     direct_light: Callable[..., Vec] = shading.direct_light
-    blocks: Callable[[Number, Number], Condition] = blocks
-    mix: Callable[..., Vec] = mix
+    shaded_light: Callable[..., Vec] = shading.shaded_light
+    ambient_light: Callable[[Vec], Vec] = shading.ambient_light
+    add_light: Callable[[Vec, Vec, Vec, Vec], Vec] = shading.add_light
+    blocks: Callable[[Number, Number, Condition], Condition] = blocks
+    mix: Callable[[Vec, Vec, Vec, Vec, Vec], Vec] = mix
+    last: Callable[[Vec, Vec, Vec, Vec], Vec] = last
+    generations: Callable[[int], int] = generations
+    seen: Callable[[Vec], Vec] = seen
     encode: Callable[..., display.Codes] = display.encode
 
 

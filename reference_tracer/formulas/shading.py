@@ -49,3 +49,18 @@ def direct_light(colour: Vec, factor: Number, diffuse: Vec, cosine: Number, spec
     """One light's share: α · colour · (diffuse·cosθ + specular·gloss). L11 "Phong's effect Result"."""
     share: Vec = (colour * factor) * (diffuse * cosine + specular * gloss)
     return share
+
+
+def shaded_light(colour: Vec, factor: Number, diffuse: Vec, cosine: Number, specular: Vec, gloss: Number) -> Vec:
+    """The share of a light that something hides: nothing. L11 "Example of Ray Tracing", shadows."""
+    return Vec(0.0, 0.0, 0.0)
+
+
+def ambient_light(ambient: Vec) -> Vec:
+    """What the sum over the lights begins with. L11 "uRT-10-RT5-Colors-Ambient_diffuse": ambient, once."""
+    return ambient
+
+
+def add_light(total: Vec, share: Vec, ambient: Vec, colour: Vec) -> Vec:
+    """The sum over the lights with one more share; `ambient` of the material and the light's `colour` are not used."""
+    return total + share

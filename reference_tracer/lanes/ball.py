@@ -1,7 +1,7 @@
 """Balls: a value with a radius that a tracer of unit roundoff u cannot leave.
 
 Every operation propagates the radii of its arguments and adds u·|result| for its
-own rounding, so a ball holds each result that any evaluation with relative
+own rounding (|mid| + rad bounds the result), so a ball holds each result that any evaluation with relative
 error u an operation may give. The midpoint is computed by the same operations
 as the plain lanes, so it is their result, bit for bit.
 
@@ -17,6 +17,7 @@ the hull of both branches; a bool context raises.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 from reference_tracer import numbers
@@ -93,12 +94,12 @@ class Ball:
 
     def _rounded(self, mid: Any, rad: Any) -> Ball:
         """The result of a sum, a difference or a root, which never underflow."""
-        rad = rad + _abs(mid) * self.precision.u
+        rad = rad + (_abs(mid) + rad) * self.precision.u
         return Ball(mid, numbers.select(rad > 0.0, (rad + self.precision.tiny) * INFLATE, 0.0), self.precision)
 
     def _scaled(self, mid: Any, rad: Any, exact: Any) -> Ball:
         """The result of a product or a quotient, which may underflow unless it is exactly 0."""
-        rad = (rad + (_abs(mid) * self.precision.u + self.precision.tiny)) * INFLATE
+        rad = (rad + ((_abs(mid) + rad) * self.precision.u + self.precision.tiny)) * INFLATE
         return Ball(mid, numbers.select(exact, 0.0, rad), self.precision)
 
     @property
@@ -158,6 +159,7 @@ INFLATE = 1.0 + 2.0**-48
 DEFLATE = 1.0 - 2.0**-48
 EDGE = 2.0**-51
 """mid ± rad is rounded once: by less than 2^-51 of |mid| and 2^-48 of rad."""
+ONE_OVER_PI = 1.0 / math.pi
 NORMAL = 1e-140
 """Vectors longer than this have a length whose square does not underflow."""
 UNDERFLOW_64 = 1e-300
@@ -242,9 +244,18 @@ class BallOperations:
         first = next(x for x in (a, b, c) if isinstance(x, Ball))
         a, b, c = (x if isinstance(x, Ball) else Ball(x, 0.0, first.precision) for x in (a, b, c))
         size = (_abs(a.mid) + _abs(b.mid)) + _abs(c.mid)
-        rad = ((a.rad + b.rad) + c.rad) + size * (2.0 * first.precision.u)
+        rad = (a.rad + b.rad) + c.rad
+        rad = rad + (size + rad) * (2.0 * first.precision.u)
         rad = numbers.select(rad > 0.0, (rad + first.precision.tiny) * INFLATE, 0.0)
         return Ball((a.mid + b.mid) + c.mid, rad, first.precision)
+
+    def over_pi(self, x: Ball) -> Ball:
+        # A tracer divides by a rounded π or multiplies by a rounded 1/π: 2u; here 2^-53 more each
+        mid = x.mid * ONE_OVER_PI
+        rad = x.rad * ONE_OVER_PI
+        rad = rad + (_abs(mid) + rad) * (2.0 * x.precision.u + 2.0**-51)
+        rad = (rad + x.precision.tiny) * INFLATE
+        return Ball(mid, numbers.select(x._nothing, 0.0, rad), x.precision)
 
     def unit3(self, x: Any, y: Any, z: Any) -> tuple[Ball, Ball, Ball]:
         """Mean value form: the derivative of a/|a| is (1 - n n')/|a|, so errors along n fall away.
@@ -266,7 +277,7 @@ class BallOperations:
         for k in range(3):
             slopes = [_abs((1.0 if j == k else 0.0) - n[k] * n[j]) * a[j].rad for j in range(3)]
             moved = ((slopes[0] + slopes[1]) + slopes[2] + (2.0 * e + e * e) * spread) / room
-            rad = moved + _abs(n[k]) * (5.0 * first.precision.u)
+            rad = moved + (_abs(n[k]) + moved) * (5.0 * first.precision.u)
             rad = numbers.select(a[k]._nothing, 0.0, (rad + first.precision.tiny) * INFLATE)
             result.append(Ball(n[k], numbers.select(safe, rad, 2.0), first.precision))
         return result[0], result[1], result[2]

@@ -26,16 +26,18 @@ SMALL = 1e-100
 class Balls:
     """Balls at unit roundoff u.
 
-    scene: for the brightest colour of each generation; single: the tracer reads a scene's numbers
+    scene, rules: for the brightest colour of each generation; single: the tracer reads a scene's numbers
     into float32; offset: how far from its start a ray may lawfully fail to see a surface.
     """
 
-    def __init__(self, u: float, scene: Scene, lanes: Backend, single: bool, offset: float) -> None:
+    def __init__(
+        self, u: float, scene: Scene, rules: Rulebook, lanes: Backend, single: bool, offset: float
+    ) -> None:
         tiny = UNDERFLOW_32 if single else UNDERFLOW_64
         self.precision = Precision(lanes.scalar(u), lanes.scalar(tiny))
         self.inputs = lanes.to_single if single else _as_given
         self.offset = lanes.scalar(offset)
-        self.brightest = [[lanes.scalar(top) for top in tops] for tops in brightest(scene)]
+        self.brightest = [[lanes.scalar(top) for top in tops] for tops in brightest(scene, rules.generations(scene.depth))]
 
     def read(self, array: Any) -> Ball:
         """A number of the scene as the tracer reads it; one that nearly underflows counts as unknown."""
@@ -50,15 +52,18 @@ class Balls:
     def start(self) -> Ball:
         return Ball(0.0, self.offset, self.precision)
 
-    def midpoint(self, condition: Doubtful) -> Any:
-        return condition.value
-
     def surely(self, condition: Doubtful) -> Any:
         return condition.value & condition.sure
 
     def matters(self, colour: Vec) -> Any:
         """Where a midpoint is not 0: elsewhere the ball holds black already."""
         return (colour.x.mid != 0.0) | (colour.y.mid != 0.0) | (colour.z.mid != 0.0)
+
+    def possible(self, weight: Vec) -> Any:
+        """Where a weight is not exactly 0."""
+        x, y, z = (part if isinstance(part, Ball) else self.exact(part) for part in weight)
+        somewhere = (x.mid != 0.0) | (y.mid != 0.0) | (z.mid != 0.0)
+        return somewhere | (x.rad != 0.0) | (y.rad != 0.0) | (z.rad != 0.0)
 
     def none_yet(self, real: Any, integer: Any) -> Any:
         """Best hit, its row, whether it certainly exists, and the nearest that might beat it."""
@@ -99,11 +104,6 @@ class Balls:
             doubts = doubts | other
         return doubts
 
-    def branch(self, colour: Vec, total: Doubtful, transmits: Any, generation: int) -> Vec:
-        lost = transmits & ~total.sure
-        tops = self.brightest[min(generation, len(self.brightest) - 1)]
-        return Vec(*(self._clip(c, lost, top) for c, top in zip(colour, tops, strict=True)))
-
     def _clip(self, colour: Ball, lost: Any, top: Any) -> Ball:
         """The ball cut to [0, top]; all of [0, top] where lost."""
         room = select(colour.mid > top - colour.mid, colour.mid, top - colour.mid)
@@ -120,11 +120,12 @@ def _lower(ball: Ball) -> Any:
     return select(lower == lower, lower, -INFINITY)  # NaN: nothing is known
 
 
-def brightest(scene: Scene) -> list[tuple[float, float, float]]:
-    """An upper bound of the colour of any ray of generation 0, 1, ... depth, channel by channel.
+def brightest(scene: Scene, generations: int) -> list[tuple[float, float, float]]:
+    """An upper bound of the colour of any ray of generation 0, 1, ... `generations`, channel by channel.
 
-    Local light: ambient + Σ attenuation·colour·(diffuse + specular), each cosine at most 1; then
-    by the recursion of the shading sum, from the last generation up. The margin of 1e-6 covers the
+    Local light: ambient + Σ attenuation·colour·(diffuse + specular), each cosine at most 1, the ambient term
+    once or with each light's colour, whichever is more; then by the recursion of the shading sum, from the
+    last generation up, the background beyond it. So it holds in every dialect. The margin of 1e-6 covers the
     rounding of this estimate and of the tracer's.
     """
     used = [scene.materials[name] for name in {thing.material for thing in scene.objects}]
@@ -132,13 +133,14 @@ def brightest(scene: Scene) -> list[tuple[float, float, float]]:
 
     def local(m: Material, k: int) -> float:
         lit = (m.diffuse[k] + m.specular[k]) or 0.0
-        return m.ambient[k] + sum(a * light.color[k] * lit for a, light in zip(near, scene.lights, strict=True) if lit)
+        ambient = m.ambient[k] * max(1.0, sum(light.color[k] for light in scene.lights))
+        return ambient + sum(a * light.color[k] * lit for a, light in zip(near, scene.lights, strict=True) if lit)
 
     last: list[tuple[float, ...]] = []
-    for generation in range(scene.depth, -1, -1):
+    for generation in range(generations, -1, -1):
         tops = []
         for k in range(3):
-            deeper = last[-1][k] if generation < scene.depth else 0.0
+            deeper = last[-1][k] if last else scene.background[k]
             surfaces = [local(m, k) + ((m.reflect[k] + m.transmit[k]) * deeper if deeper else 0.0) for m in used]
             tops.append(max([scene.background[k], *surfaces]) * (1.0 + 1e-6))
         last.append(tuple(tops))

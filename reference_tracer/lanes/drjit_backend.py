@@ -19,10 +19,10 @@ from drjit import llvm
 from numpy.typing import NDArray
 
 from reference_tracer.lanes.backend import State, leaves, rebuild
-from reference_tracer.numbers import TINY_32, TINY_64, Unit3, register
+from reference_tracer.numbers import TINY_32, TINY_64, Composed, register
 
 
-class DrJitOperations(Unit3):
+class DrJitOperations(Composed):
     """Formulas on DrJit arrays."""
 
     rank = 2

@@ -32,14 +32,14 @@ class Numbers(Protocol):
     def start(self) -> Any:
         """How far from its start a ray may first meet something."""
 
-    def midpoint(self, condition: Any) -> Any:
-        """The branch that is taken."""
-
     def surely(self, condition: Any) -> Any:
         """Where the condition certainly holds."""
 
     def matters(self, colour: Vec) -> Any:
-        """Where the colour may be other than black."""
+        """Where a colour is other than black."""
+
+    def possible(self, weight: Vec) -> Any:
+        """Where a weight may be other than 0."""
 
     def none_yet(self, real: Any, integer: Any) -> Any:
         """No hit so far; `real` and `integer` are lanes of zeros."""
@@ -59,9 +59,6 @@ class Numbers(Protocol):
     def join(self, doubts: Any, *others: Any) -> Any:
         """All doubts of a ray and its branches."""
 
-    def branch(self, colour: Vec, total: Any, transmits: Any, generation: int) -> Vec:
-        """The colour that the refracted branch brings, which total reflection may cut off."""
-
 
 class Floats:
     """Plain lanes: numbers as they are, no doubts."""
@@ -75,14 +72,13 @@ class Floats:
     def start(self) -> Any:
         return 0.0
 
-    def midpoint(self, condition: Any) -> Any:
-        return condition
-
     def surely(self, condition: Any) -> Any:
         return condition
 
     def matters(self, colour: Vec) -> Any:
         return (colour.x != 0.0) | (colour.y != 0.0) | (colour.z != 0.0)
+
+    possible = matters
 
     def none_yet(self, real: Any, integer: Any) -> Any:
         return (real + float("inf"), integer - 1)
@@ -103,6 +99,3 @@ class Floats:
 
     def join(self, doubts: Any, *others: Any) -> Any:
         return doubts
-
-    def branch(self, colour: Vec, total: Any, transmits: Any, generation: int) -> Vec:
-        return colour

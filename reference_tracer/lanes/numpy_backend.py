@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference_tracer.lanes.backend import State
-from reference_tracer.numbers import TINY_32, TINY_64, Unit3, register
+from reference_tracer.numbers import TINY_32, TINY_64, Composed, register
 
 
-class NumPyOperations(Unit3):
+class NumPyOperations(Composed):
     """Formulas on NumPy arrays and scalars."""
 
     rank = 1

@@ -68,7 +68,7 @@ def enclose(
     Scene numbers are taken as that tracer reads them: rounded to float32 unless u is below
     2^-40; offset: how far from its start a ray may lawfully fail to see a surface.
     """
-    balls = Balls(u, scene, lanes, single=u > 2.0**-40, offset=offset)
+    balls = Balls(u, scene, rules, lanes, single=u > 2.0**-40, offset=offset)
     columns = _columns(scene, lanes, rules, balls, progress)
     mids, radii, doubts = columns[0:6:2], columns[1:6:2], columns[6]
     height, width = scene.image.height, scene.image.width

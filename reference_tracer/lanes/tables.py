@@ -29,7 +29,6 @@ class Tables:
             name: backend.integers(column)
             for name, column in {
                 "shininess": [m.shininess for m in materials],
-                "reflects": [int(any(m.reflect)) for m in materials],
                 "transmits": [int(any(m.transmit)) for m in materials],
                 "is_point": [int(isinstance(light, PointLight)) for light in scene.lights],
                 "attenuation": [_attenuation(light) for light in scene.lights],

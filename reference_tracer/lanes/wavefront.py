@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from reference_tracer.lanes.backend import Array, Backend, each
 from reference_tracer.lanes.floats import Nearest, Numbers
 from reference_tracer.lanes.tables import Tables
-from reference_tracer.numbers import select
+from reference_tracer.numbers import less, select
 from reference_tracer.rulebook import Rulebook
 from reference_tracer.vector import Vec, select_vec
 from scenes.model import Scene
@@ -83,17 +83,19 @@ class Wavefront:
         # Meet the objects; the same kernel serves every generation of every scene
         self.backend.evaluate(tuple(rays))
         surface, hit, local, doubts = self.arrive(rays)
-        reflects = hit & (self._integer("reflects", surface.row) > 0)
-        transmits = hit & (self._integer("transmits", surface.row) > 0)
         _, total = self._refract(rays.v, surface)
-        taken = transmits & ~self.numbers.midpoint(total)
-        cut = self.numbers.doubt(doubts, CRITICAL, total, transmits)
-        self.backend.evaluate((local, doubts, cut, *surface, hit, reflects, taken))
-        if generation == self.scene.depth:
-            return self.numbers.bounded(local, doubts, generation), doubts
+        reflect, transmit = self._weights(rays.v, surface, total)
+        reflects = hit & self.numbers.possible(reflect)
+        transmits = hit & self.numbers.possible(transmit)
+        cut = self.numbers.doubt(doubts, CRITICAL, total, hit & self._transmits(surface.row))
+        self.backend.evaluate((local, doubts, cut, *surface, hit, total, reflects, transmits))
+        if generation == self.rules.generations(self.scene.depth):
+            ended = self.rules.last(local, reflect, transmit, self._view("background"))
+            found = self.rules.seen(select_vec(hit, ended, local))
+            return self.numbers.bounded(found, doubts, generation), doubts
 
         # Trace the rays whose weight is not 0, and bring their colours back to where they came from
-        up, down = self.backend.compress(reflects), self.backend.compress(taken)
+        up, down = self.backend.compress(reflects), self.backend.compress(transmits)
         mirrored, refracted = self.backend.width(up), self.backend.width(down)
         reflected = transmitted = each(local, lambda array: self.backend.zeros(array))
         passed_on = cut
@@ -105,12 +107,12 @@ class Wavefront:
             reflected = self._back(colour, to_up)
             transmitted = self._back(colour, to_down)
             passed_on = self.numbers.join(cut, self._back(child_doubts, to_up), self._back(child_doubts, to_down))
-        transmitted = self.numbers.branch(transmitted, total, transmits, generation + 1)
 
         # Weigh the branches; a ray without any keeps its local colour
-        reflect, transmit = self._weights(rays, surface)
+        reflect, transmit = self._weights(rays.v, surface, total)
         blended = self.rules.mix(local, reflect, reflected, transmit, transmitted)
-        result = self.numbers.bounded(select_vec(hit, blended, local), doubts, generation)
+        found = self.rules.seen(select_vec(hit, blended, local))
+        result = self.numbers.bounded(found, doubts, generation)
         self.backend.evaluate((result, passed_on))
         return result, passed_on
 
@@ -143,9 +145,9 @@ class Wavefront:
 
         def step(row: Any, meet: Callable[..., Any], state: Any) -> Any:
             distance, meets = meet(row, p, i, start)
-            return (state[0] | (meets & self.rules.blocks(distance, light_distance)),)
+            return (state[0] | (meets & self.rules.blocks(distance, light_distance, ~self._transmits(row))),)
 
-        nothing = self.rules.blocks(self.numbers.exact(self.backend.to_real(start - start)), -1.0)
+        nothing = less(self.numbers.exact(self.backend.to_real(start - start)), -1.0)
         wanted = self.scene.shadows
         return self._over_objects(step, (nothing,), lambda state: lit & ~self.numbers.surely(state[0]), wanted)[0]
 
@@ -175,6 +177,8 @@ class Wavefront:
     def local_colour(self, v: Vec, surface: Surface, hit: Array, doubts: Any) -> tuple[Vec, Any]:
         """Ambient, and the diffuse and specular light of every lamp in view."""
         rules, row = self.rules, surface.row
+        n = rules.shading_normal(surface.n, surface.leaving)
+        ambient = self._vec("ambient", row)
         diffuse, specular = self._vec("diffuse", row), self._vec("specular", row)
         shininess = self._integer("shininess", row)
 
@@ -184,30 +188,36 @@ class Wavefront:
             kind = self._integer("attenuation", k)
             i, distance = rules.light_vector(self._vec("light", k), surface.p, is_point)
             factor = rules.attenuation(distance, kind == 1, kind == 2)
-            cosine = rules.lambert(i, surface.n)
-            gloss = rules.phong(i, surface.n, v, shininess, rules.reflect(i, surface.n))
-            share = rules.direct_light(self._vec("color", k), factor, diffuse, cosine, specular, gloss)
+            cosine = rules.lambert(i, n)
+            gloss = rules.phong(i, n, v, shininess, rules.reflect(i, n))
+            terms = (self._vec("color", k), factor, diffuse, cosine, specular, gloss)
+            share, shaded = rules.direct_light(*terms), rules.shaded_light(*terms)
             lit = hit & self.numbers.matters(share)
             blocked = self.shadowed(surface.p, i, distance, row, lit)
             doubts = self.numbers.doubt(doubts, SHADOW, blocked, lit)
-            seen = Vec(*(select(lit, select(blocked, 0.0, part), part) for part in share))
-            return (colour + seen, doubts)
+            hidden = Vec(*(select(blocked, dark, part) for dark, part in zip(shaded, share, strict=True)))
+            return (rules.add_light(colour, select_vec(lit, hidden, share), ambient, terms[0]), doubts)
 
-        ambient = self._vec("ambient", row)
         lights = self.backend.count(self.tables.lights)
-        colour, doubts = self.backend.fold(lights, step, (ambient, doubts), lambda state: hit)
+        colour, doubts = self.backend.fold(lights, step, (rules.ambient_light(ambient), doubts), lambda state: hit)
         return colour, doubts
 
     def _refract(self, v: Vec, surface: Surface) -> tuple[Vec, Any]:
         return self.rules.refract(v, surface.n, surface.leaving, self._index(surface.row))
 
-    def _weights(self, rays: Rays, surface: Surface) -> tuple[Vec, Vec]:
+    def _weights(self, v: Vec, surface: Surface, total: Any) -> tuple[Vec, Vec]:
         """What the branches count for."""
-        reflect, transmit = self._vec("reflect", surface.row), self._vec("transmit", surface.row)
-        if not self.scene.fresnel:
-            return reflect, transmit
-        F = self.rules.fresnel(rays.v, surface.n, surface.leaving, self._index(surface.row))
-        return reflect * F, transmit * (1.0 - F)
+        return self.rules.weights(
+            self._vec("reflect", surface.row),
+            self._vec("transmit", surface.row),
+            total,
+            self.scene.fresnel,
+            lambda: self.rules.fresnel(v, surface.n, surface.leaving, self._index(surface.row)),
+        )
+
+    def _transmits(self, row: Any) -> Any:
+        """Where the object of a row is transparent."""
+        return self._integer("transmits", row) > 0
 
     def _children(self, rays: Rays, surface: Surface, up: Array, down: Array) -> Rays:
         """The next generation: first the reflected rays, then the refracted ones."""
