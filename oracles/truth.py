@@ -51,7 +51,10 @@ class Truth:
 def truth(scene: Scene, precision: str, backend: str = "numpy", rules: Rulebook = LECTURE) -> Truth:
     """Truth and tolerance of a scene for a tracer of that precision ("float32" or "float64")."""
     u = SAFETY * ROUNDOFF[precision]
-    found = lanes.enclose(scene, lanes.backend(backend, 64), u, lawful_offset(scene), rules)
+    offset = lawful_offset(scene)
+    found = lanes.enclose(scene, lanes.backend(backend, 64), u, offset, rules)
+    if u > lanes.SINGLE:
+        found = lanes.narrow(scene, found, u, offset, rules)
     return Truth(scene, precision, found.pixels, found.radius, found.doubts)
 
 

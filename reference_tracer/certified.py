@@ -25,13 +25,15 @@ class Certified:
 
     value, bound: (height, width, 3), |truth - value| <= bound; bits: (height, width), the precision that was needed, 53
     for the ball lanes; decided: (height, width), False where no precision up to the cap decides the path
-    and the bound holds the hull of all its branches.
+    and the bound holds the hull of all its branches; margin: (height, width), the smallest relative margin of
+    any decision on the path (lanes.margins).
     """
 
     value: NDArray[np.float64]
     bound: NDArray[np.float64]
     bits: NDArray[np.int64]
     decided: NDArray[np.bool_]
+    margin: NDArray[np.float64]
 
 
 def render(
@@ -49,7 +51,7 @@ def render(
         value[j, i], bound[j, i] = pixel.value, pixel.bound
         bits[j, i], decided[j, i] = pixel.bits, pixel.decided
         progress((k + 1) / len(open_pixels))
-    return Certified(value, bound, bits, decided)
+    return Certified(value, bound, bits, decided, lanes.margins(scene, rules))
 
 
 def render_exact(
@@ -67,4 +69,4 @@ def render_exact(
             value[j, i], bound[j, i] = pixel.value, pixel.bound
             bits[j, i], decided[j, i] = pixel.bits, pixel.decided
         progress((j + 1) / height)
-    return Certified(value, bound, bits, decided)
+    return Certified(value, bound, bits, decided, lanes.margins(scene, rules))

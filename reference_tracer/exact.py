@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from reference_tracer.numbers import Number, Composed, less, register, select
+from reference_tracer.numbers import Composed, Number, less, register, select
 from reference_tracer.plain import PlainTracer
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec, dot

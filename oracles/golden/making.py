@@ -104,7 +104,9 @@ def _one(folder: Path, scene: Scene, backend: str) -> Entry:
 
 def _full(found: certified.Certified) -> bytes:
     stream = io.BytesIO()
-    np.savez_compressed(stream, value=found.value, bound=found.bound, decided=found.decided, bits=found.bits)
+    np.savez_compressed(
+        stream, value=found.value, bound=found.bound, decided=found.decided, bits=found.bits, margin=found.margin
+    )
     return stream.getvalue()
 
 
@@ -119,6 +121,7 @@ def _layers(found: certified.Certified, first: lanes.FirstHits) -> bytes:
         channels[name] = stored[:, :, k]
         channels[f"bound.{name}"] = bound[:, :, k]
     channels["decided.V"] = found.decided.astype(np.float32)
+    channels["margin.V"] = found.margin.astype(np.float32)
     channels["depth.Z"] = first.distance.astype(np.float32)
     for k, name in enumerate("XYZ"):
         channels[f"normal.{name}"] = first.normal[:, :, k].astype(np.float32)

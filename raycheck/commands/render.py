@@ -74,7 +74,8 @@ def _certified(scene: Scene, arithmetic: str, progress: Progress) -> Image:
     open_pixels = int((~found.decided).sum())
     print(
         f"{scene.name}: every value proved to {found.bound.max():.2g} (median {np.median(found.bound):.2g}), "
-        f"at most {found.bits.max()} bits, {open_pixels} pixels are hulls of undecided branches",
+        f"at most {found.bits.max()} bits, {open_pixels} pixels are hulls of undecided branches; "
+        f"the closest decision has the margin {found.margin.min():.2g}",
         file=sys.stderr,
     )
     return Image(found.value)

@@ -64,9 +64,7 @@ def fresnel(v: Vec, n: Vec, leaving: Condition, index: Number) -> Number:
     return select(at_least(sin2, 1.0), 1.0, F)
 
 
-def weights(
-    reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]
-) -> tuple[Vec, Vec]:
+def weights(reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]) -> tuple[Vec, Vec]:
     """What the two branches count for: the material's weights; nothing is refracted under total reflection.
 
     asked: the scene asks for Fresnel's share F = share(); then the weights are multiplied by F and 1 - F.

@@ -21,6 +21,7 @@ import math
 from typing import Any, NamedTuple
 
 from reference_tracer import numbers
+from reference_tracer.vector import Vec
 
 
 class Doubtful:
@@ -89,17 +90,23 @@ class Ball:
     def with_parts(self, parts: tuple[Any, Any]) -> Ball:
         return Ball(*parts, self.precision)
 
+    @staticmethod
+    def begin(o: Vec, v: Vec) -> tuple[Vec, Vec]:
+        """Origin and direction of a generation's rays: as they are."""
+        return o, v
+
     def _other(self, other: Any) -> Ball:
         return other if isinstance(other, Ball) else Ball(other, 0.0, self.precision)
 
     def _rounded(self, mid: Any, rad: Any) -> Ball:
         """The result of a sum, a difference or a root, which never underflow."""
         rad = rad + (_abs(mid) + rad) * self.precision.u
-        return Ball(mid, numbers.select(rad > 0.0, (rad + self.precision.tiny) * INFLATE, 0.0), self.precision)
+        return Ball(mid, numbers.select(rad == 0.0, 0.0, (rad + self.precision.tiny) * INFLATE), self.precision)
 
     def _scaled(self, mid: Any, rad: Any, exact: Any) -> Ball:
         """The result of a product or a quotient, which may underflow unless it is exactly 0."""
         rad = (rad + ((_abs(mid) + rad) * self.precision.u + self.precision.tiny)) * INFLATE
+        rad = numbers.select(rad == rad, rad, INFINITY)  # 0 times unbounded
         return Ball(mid, numbers.select(exact, 0.0, rad), self.precision)
 
     @property
@@ -246,7 +253,7 @@ class BallOperations:
         size = (_abs(a.mid) + _abs(b.mid)) + _abs(c.mid)
         rad = (a.rad + b.rad) + c.rad
         rad = rad + (size + rad) * (2.0 * first.precision.u)
-        rad = numbers.select(rad > 0.0, (rad + first.precision.tiny) * INFLATE, 0.0)
+        rad = numbers.select(rad == 0.0, 0.0, (rad + first.precision.tiny) * INFLATE)
         return Ball((a.mid + b.mid) + c.mid, rad, first.precision)
 
     def over_pi(self, x: Ball) -> Ball:

@@ -26,31 +26,45 @@ SMALL = 1e-100
 class Balls:
     """Balls at unit roundoff u.
 
-    scene, rules: for the brightest colour of each generation; single: the tracer reads a scene's numbers
-    into float32; offset: how far from its start a ray may lawfully fail to see a surface.
+    ball: the kind of ball; scene, rules: for the brightest colour of each generation; single: the tracer
+    reads a scene's numbers into float32; offset: how far from its start a ray may lawfully fail to see a surface.
     """
 
     def __init__(
-        self, u: float, scene: Scene, rules: Rulebook, lanes: Backend, single: bool, offset: float
+        self,
+        u: float,
+        scene: Scene,
+        rules: Rulebook,
+        lanes: Backend,
+        single: bool,
+        offset: float,
+        ball: Any = Ball,
     ) -> None:
+        self.ball = ball
         tiny = UNDERFLOW_32 if single else UNDERFLOW_64
         self.precision = Precision(lanes.scalar(u), lanes.scalar(tiny))
         self.inputs = lanes.to_single if single else _as_given
         self.offset = lanes.scalar(offset)
-        self.brightest = [[lanes.scalar(top) for top in tops] for tops in brightest(scene, rules.generations(scene.depth))]
+        self.brightest = [
+            [lanes.scalar(top) for top in tops] for tops in brightest(scene, rules.generations(scene.depth))
+        ]
 
-    def read(self, array: Any) -> Ball:
+    def read(self, array: Any) -> Any:
         """A number of the scene as the tracer reads it; one that nearly underflows counts as unknown."""
         gap = array - self.inputs(array)
         size = select(array < 0.0, -array, array)
         rad = select(gap < 0.0, -gap, gap)
-        return Ball(array, select((size < SMALL) & (array != 0.0), size + SMALL, rad), self.precision)
+        return self.ball(array, select((size < SMALL) & (array != 0.0), size + SMALL, rad), self.precision)
 
-    def exact(self, array: Any) -> Ball:
-        return Ball(array, array - array, self.precision)
+    def exact(self, array: Any) -> Any:
+        return self.ball(array, array - array, self.precision)
 
-    def start(self) -> Ball:
-        return Ball(0.0, self.offset, self.precision)
+    def start(self) -> Any:
+        return self.ball(0.0, self.offset, self.precision)
+
+    def fresh(self, o: Vec, v: Vec) -> tuple[Vec, Vec]:
+        begun: tuple[Vec, Vec] = self.ball.begin(o, v)
+        return begun
 
     def surely(self, condition: Doubtful) -> Any:
         return condition.value & condition.sure
@@ -61,21 +75,21 @@ class Balls:
 
     def possible(self, weight: Vec) -> Any:
         """Where a weight is not exactly 0."""
-        x, y, z = (part if isinstance(part, Ball) else self.exact(part) for part in weight)
+        x, y, z = (part if hasattr(part, "rad") else self.exact(part) for part in weight)
         somewhere = (x.mid != 0.0) | (y.mid != 0.0) | (z.mid != 0.0)
         return somewhere | (x.rad != 0.0) | (y.rad != 0.0) | (z.rad != 0.0)
 
     def none_yet(self, real: Any, integer: Any) -> Any:
         """Best hit, its row, whether it certainly exists, and the nearest that might beat it."""
         no = integer != 0
-        return (Ball(real + INFINITY, real, self.precision), integer - 1, no, real + INFINITY)
+        return (self.ball(real + INFINITY, real, self.precision), integer - 1, no, real + INFINITY)
 
-    def consider(self, state: Any, rules: Rulebook, distance: Ball, meets: Doubtful, row: Any) -> Any:
+    def consider(self, state: Any, rules: Rulebook, distance: Any, meets: Doubtful, row: Any) -> Any:
         best, best_row, certain, rival = state
         wins = meets.value & ((best_row < 0) | rules.nearer(distance.mid, best.mid, row, best_row))
         # The loser of this comparison may still be nearer than the final best: keep the least such bound
-        beaten = select(best_row < 0, INFINITY, _lower(best))
-        loser = select(wins, beaten, select(meets.possible, _lower(distance), INFINITY))
+        beaten = select(best_row < 0, INFINITY, lower_end(best))
+        loser = select(wins, beaten, select(meets.possible, lower_end(distance), INFINITY))
         rival = select(loser < rival, loser, rival)
         return (
             select(wins, distance, best),
@@ -104,20 +118,21 @@ class Balls:
             doubts = doubts | other
         return doubts
 
-    def _clip(self, colour: Ball, lost: Any, top: Any) -> Ball:
+    def _clip(self, colour: Any, lost: Any, top: Any) -> Any:
         """The ball cut to [0, top]; all of [0, top] where lost."""
         room = select(colour.mid > top - colour.mid, colour.mid, top - colour.mid)
         known = ~lost & (colour.rad < room)
-        return Ball(colour.mid, select(known, colour.rad, room), self.precision)
+        return self.ball(colour.mid, select(known, colour.rad, room), self.precision)
 
 
 def _as_given(array: Any) -> Any:
     return array
 
 
-def _lower(ball: Ball) -> Any:
+def lower_end(ball: Any) -> Any:
+    """At most every value of the ball; -inf where nothing is known of it."""
     lower = ball.lower
-    return select(lower == lower, lower, -INFINITY)  # NaN: nothing is known
+    return select(lower == lower, lower, -INFINITY)
 
 
 def brightest(scene: Scene, generations: int) -> list[tuple[float, float, float]]:
@@ -137,7 +152,7 @@ def brightest(scene: Scene, generations: int) -> list[tuple[float, float, float]
         return ambient + sum(a * light.color[k] * lit for a, light in zip(near, scene.lights, strict=True) if lit)
 
     last: list[tuple[float, ...]] = []
-    for generation in range(generations, -1, -1):
+    for _ in range(generations, -1, -1):
         tops = []
         for k in range(3):
             deeper = last[-1][k] if last else scene.background[k]

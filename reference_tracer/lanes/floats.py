@@ -32,6 +32,9 @@ class Numbers(Protocol):
     def start(self) -> Any:
         """How far from its start a ray may first meet something."""
 
+    def fresh(self, o: Vec, v: Vec) -> tuple[Vec, Vec]:
+        """Origin and direction of a generation's rays, as it begins."""
+
     def surely(self, condition: Any) -> Any:
         """Where the condition certainly holds."""
 
@@ -71,6 +74,9 @@ class Floats:
 
     def start(self) -> Any:
         return 0.0
+
+    def fresh(self, o: Vec, v: Vec) -> tuple[Vec, Vec]:
+        return o, v
 
     def surely(self, condition: Any) -> Any:
         return condition

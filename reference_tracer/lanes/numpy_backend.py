@@ -84,13 +84,13 @@ class NumPyBackend:
         return integers.astype(self.dtype)
 
     def gather(self, table: Any, index: Any) -> Any:
-        return table[index]
+        return table[..., index]
 
     def packet(self, table: Any, row: Any) -> Any:
         return tuple(column[row] for column in table)
 
     def gather_or_zero(self, table: Any, index: Any) -> Any:
-        return np.where(index >= 0, table[index], np.zeros(1, dtype=table.dtype))
+        return np.where(index >= 0, table[..., index], np.zeros(1, dtype=table.dtype))
 
     def fold(
         self, count: int, step: Callable[[Any, State], State], state: State, wanted: Callable[[State], Any]

@@ -10,14 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference_tracer.image import Image
+from reference_tracer.lanes.affine import Affine
 from reference_tracer.lanes.backend import Backend, leaves
 from reference_tracer.lanes.balls import Balls
+from reference_tracer.lanes.branches import hull
 from reference_tracer.lanes.floats import Floats, Numbers
+from reference_tracer.lanes.margins import Margins
 from reference_tracer.lanes.numpy_backend import NumPyBackend
 from reference_tracer.lanes.tables import Tables
 from reference_tracer.lanes.wavefront import Wavefront
 from reference_tracer.rulebook import LECTURE, Rulebook
 from scenes.model import Scene
+
+WIDE = 3e-4
+"""Pixels with a larger radius are looked at again with affine forms; it decides about time, not about truth."""
+
+SINGLE = 2.0**-40
+"""A tracer with a larger roundoff reads a scene's numbers into float32."""
 
 Progress = Callable[[float], Any]
 
@@ -68,11 +77,36 @@ def enclose(
     Scene numbers are taken as that tracer reads them: rounded to float32 unless u is below
     2^-40; offset: how far from its start a ray may lawfully fail to see a surface.
     """
-    balls = Balls(u, scene, rules, lanes, single=u > 2.0**-40, offset=offset)
+    balls = Balls(u, scene, rules, lanes, single=u > SINGLE, offset=offset)
     columns = _columns(scene, lanes, rules, balls, progress)
     mids, radii, doubts = columns[0:6:2], columns[1:6:2], columns[6]
     height, width = scene.image.height, scene.image.width
     return Enclosure(_picture(scene, mids), _picture(scene, radii), doubts.reshape(height, width).astype(np.int64))
+
+
+def narrow(scene: Scene, found: Enclosure, u: float, offset: float, rules: Rulebook = LECTURE) -> Enclosure:
+    """The same enclosure, its wide and doubtful pixels looked at again with affine forms and all their branches."""
+    lanes = NumPyBackend(64)
+    forms = Balls(u, scene, rules, lanes, single=u > SINGLE, offset=offset, ball=Affine)
+    front = Wavefront(scene, rules, lanes, forms, Tables(scene, lanes), hull)
+    radius, doubts = found.radius.reshape(-1, 3).copy(), found.doubts.ravel().copy()
+    wanted = np.flatnonzero((doubts != 0) | (radius.max(axis=1) > WIDE))
+    tile = tile_size(scene, lanes)
+    with np.errstate(all="ignore"):
+        for begin in range(0, wanted.size, tile):
+            pixels = wanted[begin : begin + tile]
+            colour, again = front.colours(pixels)
+            doubts[pixels] &= again
+            radius[pixels] = np.minimum(radius[pixels], np.stack([part.rad for part in colour], axis=-1))
+    return Enclosure(found.pixels, radius.reshape(found.radius.shape), doubts.reshape(found.doubts.shape))
+
+
+def margins(scene: Scene, rules: Rulebook = LECTURE) -> NDArray[np.float64]:
+    """The smallest decision margin on each pixel's path, (height, width); inf where nothing was decided."""
+    watching = Margins(rules)
+    columns = _columns(scene, NumPyBackend(64), watching.rules(), watching, lambda share: None)
+    with np.errstate(divide="ignore"):
+        return (1.0 / columns[3]).reshape(scene.image.height, scene.image.width)
 
 
 @dataclass(frozen=True)
@@ -113,7 +147,7 @@ def _columns(scene: Scene, lanes: Backend, rules: Rulebook, numbers: Numbers, pr
     with np.errstate(all="ignore"):  # lanes that have nothing to compute may divide by zero
         for begin in range(0, total, tile):
             end = min(begin + tile, total)
-            parts.append([lanes.numpy(leaf) for leaf in leaves(front.colours(begin, end))])
+            parts.append([lanes.numpy(leaf) for leaf in leaves(front.colours(lanes.indices(begin, end)))])
             progress(end / total)
     if len(parts) == 1:
         return parts[0]

@@ -42,17 +42,20 @@ class Surface(NamedTuple):
 
 @dataclass(frozen=True)
 class Wavefront:
-    """One scene on one backend; `numbers` decides what a lane's number is."""
+    """One scene on one backend; `numbers` decides what a lane's number is.
+
+    other_branches: what to make of rays whose nearest object is in doubt; nothing unless given.
+    """
 
     scene: Scene
     rules: Rulebook
     backend: Backend
     numbers: Numbers
     tables: Tables
+    other_branches: Callable[..., tuple[Vec, Any]] | None = None
 
-    def colours(self, begin: int, end: int) -> tuple[Vec, Any]:
-        """Colours of the pixels begin .. end-1, row by row, and the doubts about them."""
-        pixel = self.backend.indices(begin, end)
+    def colours(self, pixel: Array) -> tuple[Vec, Any]:
+        """Colours of these pixels, counted row by row, and the doubts about them."""
         return self.trace(self.eye_rays(pixel), 0)
 
     def eye_rays(self, pixel: Array) -> Rays:
@@ -80,9 +83,17 @@ class Wavefront:
 
     def trace(self, rays: Rays, generation: int) -> tuple[Vec, Any]:
         """Colours of these rays and of all that follows from them. The plain tracer's find_rgb."""
-        # Meet the objects; the same kernel serves every generation of every scene
+        rays = Rays(*self.numbers.fresh(rays.o, rays.v), rays.start)
         self.backend.evaluate(tuple(rays))
-        surface, hit, local, doubts = self.arrive(rays)
+        nearest, doubts = self.nearest(rays)
+        if self.other_branches is None:
+            return self.follow(rays, nearest, doubts, generation)
+        return self.other_branches(self, rays, nearest, doubts, generation)
+
+    def follow(self, rays: Rays, nearest: Nearest, doubts: Any, generation: int) -> tuple[Vec, Any]:
+        """Colours of rays whose nearest object is known."""
+        # Shade; one kernel serves every generation of every scene
+        surface, hit, local, doubts = self.arrive(rays, nearest, doubts)
         _, total = self._refract(rays.v, surface)
         reflect, transmit = self._weights(rays.v, surface, total)
         reflects = hit & self.numbers.possible(reflect)
@@ -90,7 +101,7 @@ class Wavefront:
         cut = self.numbers.doubt(doubts, CRITICAL, total, hit & self._transmits(surface.row))
         self.backend.evaluate((local, doubts, cut, *surface, hit, total, reflects, transmits))
         if generation == self.rules.generations(self.scene.depth):
-            ended = self.rules.last(local, reflect, transmit, self._view("background"))
+            ended = self.rules.last(local, reflect, transmit, self.background())
             found = self.rules.seen(select_vec(hit, ended, local))
             return self.numbers.bounded(found, doubts, generation), doubts
 
@@ -116,9 +127,8 @@ class Wavefront:
         self.backend.evaluate((result, passed_on))
         return result, passed_on
 
-    def arrive(self, rays: Rays) -> tuple[Surface, Array, Vec, Any]:
+    def arrive(self, rays: Rays, nearest: Nearest, doubts: Any) -> tuple[Surface, Array, Vec, Any]:
         """The nearest surface of each ray, whether there is one, and its local colour."""
-        nearest, doubts = self.nearest(rays)
         hit = nearest.row >= 0
         row = select(hit, nearest.row, rays.start - rays.start)
         distance = select(hit, nearest.distance, 1.0)
@@ -127,18 +137,32 @@ class Wavefront:
         n, leaving = self.rules.face(rays.v, normal)
         surface = Surface(p, n, leaving, row)
         lit, doubts = self.local_colour(rays.v, surface, hit, doubts)
-        return surface, hit, select_vec(hit, lit, self._view("background")), doubts
+        return surface, hit, select_vec(hit, lit, self.background()), doubts
+
+    def over_objects(self, rays: Rays, step: Callable[[Any, Any, Any, Any], Any], state: Any) -> Any:
+        """State = step(state, distance, meets, row) over all objects, asked of these rays."""
+
+        def met(row: Any, meet: Callable[..., Any], state: Any) -> Any:
+            distance, meets = meet(row, rays.o, rays.v, rays.start)
+            return step(state, distance, meets, row)
+
+        return self._over_objects(met, state, lambda state: rays.start == rays.start)
+
+    def meet_row(self, rays: Rays, row: Array) -> Any:
+        """Distance along each ray to the object of its row, met or not."""
+        round_, _ = self._meet_sphere(row, rays.o, rays.v, rays.start)
+        flat, _ = self._meet_plane(row, rays.o, rays.v, rays.start)
+        return select(row < self.backend.count(self.tables.spheres), round_, flat)
 
     def nearest(self, rays: Rays) -> tuple[Nearest, Any]:
         """The first object along each ray."""
 
-        def step(row: Any, meet: Callable[..., Any], state: Any) -> Any:
-            distance, meets = meet(row, rays.o, rays.v, rays.start)
+        def step(state: Any, distance: Any, meets: Any, row: Any) -> Any:
             return self.numbers.consider(state, self.rules, distance, meets, row)
 
         integer = rays.start - rays.start
         state = self.numbers.none_yet(self.backend.to_real(integer), integer)
-        return self.numbers.settle(self._over_objects(step, state, lambda state: integer == 0))
+        return self.numbers.settle(self.over_objects(rays, step, state))
 
     def shadowed(self, p: Vec, i: Vec, light_distance: Any, start: Array, lit: Array) -> Any:
         """Does anything stand strictly between p and the light? Asked only where it is lit."""
@@ -249,6 +273,10 @@ class Wavefront:
 
     def _integer(self, name: str, row: Any) -> Any:
         return self.backend.gather(self.tables.integers[name], row)
+
+    def background(self) -> Vec:
+        """The colour of a ray that meets nothing."""
+        return self._view("background")
 
     def _view(self, name: str) -> Vec:
         return self._vec(name, 0)

@@ -109,7 +109,9 @@ def test_the_sphere_behind_the_light_shades_nothing() -> None:
 
 
 def test_a_tracer_whose_shadow_rays_pass_the_light_fails() -> None:
-    endless = dataclasses.replace(LECTURE, blocks=lambda distance, light_distance, opaque: distance > 0.0 * light_distance)
+    endless = dataclasses.replace(
+        LECTURE, blocks=lambda distance, light_distance, opaque: distance > 0.0 * light_distance
+    )
     assert outside("shadow-behind-light", pixels(scene_of("shadow-behind-light"), endless)) > 100
 
 
