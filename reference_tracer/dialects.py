@@ -14,7 +14,8 @@ from types import MappingProxyType
 from typing import Any
 
 from reference_tracer import rulebook
-from reference_tracer.formulas import conventions, shading
+from reference_tracer.formulas import conventions, optics, shading
+from reference_tracer.numbers import Condition, Number
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec
 
@@ -128,8 +129,17 @@ def _gloss(dialect: Dialect) -> Callable[..., Any]:
 
 
 def _weights(dialect: Dialect, base: Rulebook) -> Callable[..., tuple[Vec, Vec]]:
-    plain = base.weights if dialect.fresnel == "scene" else conventions.fresnel_on_glass
+    plain = base.weights if dialect.fresnel == "scene" else fresnel_on_glass
     return conventions.total_reflects(plain) if dialect.tir == "reflect" else plain
+
+
+def fresnel_on_glass(
+    reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]
+) -> tuple[Vec, Vec]:
+    """The weights times F and 1 - F on every transparent surface, and wherever the scene asks."""
+    F = share()
+    kept = F if asked else conventions.on_glass(transmit, F)
+    return reflect * kept, optics.cut(total, transmit * (1.0 - F))
 
 
 def _last(dialect: Dialect, mix: Callable[..., Vec], base: Rulebook) -> Callable[..., Vec]:

@@ -38,6 +38,17 @@ def mix(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transmitted: Ve
     return (local + reflect * reflected) + transmit * transmitted
 
 
+def weights(reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]) -> tuple[Vec, Vec]:
+    """What the two branches count for: the material's weights; nothing is refracted under total reflection.
+
+    asked: the scene asks for Fresnel's share F = share(); then the weights are multiplied by F and 1 - F.
+    """
+    if asked:
+        F = share()
+        reflect, transmit = reflect * F, transmit * (1.0 - F)
+    return reflect, optics.cut(total, transmit)
+
+
 def last(local: Vec, reflect: Vec, transmit: Vec, background: Vec) -> Vec:
     """Colour of a ray of the last generation: what lies beyond is worth nothing."""
     return local
@@ -72,7 +83,7 @@ class Rulebook:
     refract: Callable[..., tuple[Vec, Condition]] = optics.refract
     fresnel: Callable[..., Number] = optics.fresnel
     shading_normal: Callable[[Vec, Condition], Vec] = optics.shading_normal
-    weights: Callable[..., tuple[Vec, Vec]] = optics.weights
+    weights: Callable[..., tuple[Vec, Vec]] = weights
     light_vector: Callable[..., tuple[Vec, Number]] = shading.light_vector
     attenuation: Callable[..., Number] = shading.attenuation
     lambert: Callable[[Vec, Vec], Number] = shading.lambert

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from reference_tracer.formulas import camera
-from reference_tracer.formulas.optics import cut
 from reference_tracer.numbers import Condition, Number, at_least, clamp0, less, over_pi, power, select, sqrt0
 from reference_tracer.vector import Vec, dot, select_vec, unit
 
@@ -113,14 +112,10 @@ def schlick(v: Vec, n: Vec, leaving: Condition, index: Number) -> Number:
     return select(at_least(sin2, 1.0), 1.0, F)
 
 
-def fresnel_on_glass(
-    reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]
-) -> tuple[Vec, Vec]:
-    """The weights times F and 1 - F on every transparent surface, and wherever the scene asks."""
+def on_glass(transmit: Vec, F: Number) -> Number:
+    """F on transparent surfaces, 1 on others: a mirror that is no dielectric keeps its weight."""
     glass = less(0.0, transmit.x) | less(0.0, transmit.y) | less(0.0, transmit.z)
-    F = share()
-    kept = F if asked else select(glass, F, 1.0)
-    return reflect * kept, cut(total, transmit * (1.0 - F))
+    return select(glass, F, 1.0)
 
 
 def total_reflects(weights: Callable[..., tuple[Vec, Vec]]) -> Callable[..., tuple[Vec, Vec]]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from reference_tracer.numbers import Condition, Number, at_least, less, select, sqrt0
 from reference_tracer.vector import Vec, dot, select_vec, unit
 
@@ -62,17 +60,6 @@ def fresnel(v: Vec, n: Vec, leaving: Condition, index: Number) -> Number:
     r_p = (n2 * c1 - n1 * c2) / select(less(0.0, p_sum), p_sum, 1.0)
     F = 0.5 * (r_s * r_s + r_p * r_p)
     return select(at_least(sin2, 1.0), 1.0, F)
-
-
-def weights(reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]) -> tuple[Vec, Vec]:
-    """What the two branches count for: the material's weights; nothing is refracted under total reflection.
-
-    asked: the scene asks for Fresnel's share F = share(); then the weights are multiplied by F and 1 - F.
-    """
-    if asked:
-        F = share()
-        reflect, transmit = reflect * F, transmit * (1.0 - F)
-    return reflect, cut(total, transmit)
 
 
 def cut(total: Condition, transmit: Vec) -> Vec:
