@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -44,6 +45,8 @@ class Comparison:
 
 def bounds(picture: Picture, truth: Truth) -> Bounds:
     """The lawful range of every value, in the form in which the picture stores it."""
+    if truth.transfer is not None:
+        return _transferred(picture, truth, truth.transfer)
     if picture.maximum is None:
         # Storing rounds once more: relative to the value, or to the least subnormal of its format
         stored = np.abs(truth.pixels) * picture.roundoff + _least(picture.roundoff)
@@ -55,6 +58,19 @@ def bounds(picture: Picture, truth: Truth) -> Bounds:
         for value in (truth.pixels - reach, truth.pixels, truth.pixels + reach)
     )
     return Bounds(low, high, middle, "code")
+
+
+def _transferred(picture: Picture, truth: Truth, transfer: Callable[[Reals], Reals]) -> Bounds:
+    """The range of values that went through a transfer function; values above 1 may have been cut before it."""
+    ends = (np.minimum(truth.pixels - truth.tolerance, 1.0), truth.pixels, truth.pixels + truth.tolerance)
+    low, middle, high = (transfer(end) for end in ends)
+    u = ENCODING_ROUNDINGS * ROUNDOFF[truth.precision] + picture.roundoff
+    low, high = low - np.abs(low) * u, high + np.abs(high) * u + _least(picture.roundoff)
+    if picture.maximum is None:
+        return Bounds(low, high, middle, "linear")
+    # Cut off or rounded to a code: nobody says which
+    down, near, up = (np.clip(end, 0.0, 1.0) * picture.maximum for end in (low, middle, high))
+    return Bounds(np.floor(down), np.floor(up + 0.5), np.floor(near), "code")
 
 
 def _least(roundoff: float) -> float:

@@ -8,6 +8,7 @@ for every tracer that evaluates the lecture's formulas with that relative error 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,7 +34,8 @@ class Truth:
     """A scene's image with its tolerance.
 
     pixels: (height, width, 3) linear; tolerance: the same shape, absolute, before the output's
-    quantisation; doubts: (height, width), bits of the decisions the precision cannot make.
+    quantisation; doubts: (height, width), bits of the decisions the precision cannot make; transfer: what linear
+    values went through before they were stored, None: nothing, or what the scene asks for.
     """
 
     scene: Scene
@@ -41,6 +43,7 @@ class Truth:
     pixels: NDArray[np.float64]
     tolerance: NDArray[np.float64]
     doubts: NDArray[np.int64]
+    transfer: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
 
     def doubtful(self) -> dict[str, int]:
         """Number of pixels in doubt, by kind of decision."""

@@ -117,6 +117,12 @@ def _subject(command: Parser) -> None:
         choices=("float32", "float64"),
         help="what a -- COMMAND, images or a Python object compute in: tolerances follow from it (float32)",
     )
+    command.add_argument(
+        "--dialect",
+        action="append",
+        metavar="KEY=VALUE",
+        help="a lawful convention other than the scene model's, as in [tracer.dialect]; may be repeated",
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

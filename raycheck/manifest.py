@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from raycheck.errors import UsageError
+from reference_tracer.dialects import Dialect
 from scenes.disk import read_bounded
 
 FILE = "raycheck.toml"
@@ -24,6 +25,28 @@ class Frozen(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+class DialectTable(Frozen):
+    """The [tracer.dialect] table: lawful conventions other than the scene model's."""
+
+    sample: Literal["corner", "centre"] | None = None
+    specular: Literal["phong", "blinn"] = "phong"
+    specular_in_shadow: Annotated[bool, Field(strict=True)] = False
+    specular_needs_light_in_front: Annotated[bool, Field(strict=True)] = True
+    ambient: Literal["once", "per_light"] = "once"
+    faces: Literal["both", "outward"] = "both"
+    glass_shadow: Literal["full", "none"] = "full"
+    limit: Literal["zero", "background", "local"] = "zero"
+    mix: Literal["add", "lerp"] = "add"
+    tir: Literal["none", "reflect"] = "none"
+    fresnel: Literal["scene", "exact", "schlick"] = "scene"
+    clamp: Literal["display", "generation"] = "display"
+    lambert: Literal["1", "1/pi"] = "1"
+
+    def choices(self) -> Dialect:
+        """The dialect that the table names."""
+        return Dialect(**(self.model_dump() | {"sample": self.sample or ""}))
+
+
 class Manifest(Frozen):
     """The [tracer] table."""
 
@@ -36,6 +59,7 @@ class Manifest(Frozen):
     precision: Literal["float32", "float64"] = "float32"
     features: tuple[Literal["plane", "shadow", "reflect", "refract", "fresnel"], ...] | None = None
     timeout: Annotated[float, Field(gt=0, le=3600, strict=True)] = 30.0
+    dialect: DialectTable = DialectTable()
 
 
 class _File(Frozen):
@@ -67,6 +91,7 @@ def explain(error: ValidationError) -> str:
             example = ': for example render = ["./tracer", "{scene}", "{image}"]' if key.endswith("render") else ""
             return f"key {key} is missing{example}"
         case "extra_forbidden":
-            return f"unknown key {key}; known are {', '.join(Manifest.model_fields)}"
+            known = DialectTable.model_fields if "dialect" in first["loc"] else Manifest.model_fields
+            return f"unknown key {key}; known are {', '.join(known)}"
         case _:
             return f"{key} = {first['input']!r:.60}: {first['msg']}"

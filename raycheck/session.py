@@ -18,7 +18,7 @@ from raycheck.known import Known
 from raycheck.machine import machine
 from raycheck.progress import Progress
 from raycheck.subjects import Subject
-from raycheck.suite import Plan, judge
+from raycheck.suite import Hearing, Plan
 from reports import junit, page, results, summary
 from scenes.catalogue import Rung, catalogue_hash, ladder, rung
 
@@ -51,9 +51,11 @@ def check(order: Order) -> tuple[results.Results, int]:
     complete = False
     progress = Progress(f"checking {order.subject.name}", len(plan.rungs))
     try:
-        for verdict in judge(order.subject, plan, order.out):
+        hearing = Hearing(order.subject, plan, order.out)
+        for verdict in hearing.verdicts():
             verdicts.append(verdict)
             progress.step(verdict.check)
+        verdicts = hearing.reconsidered(verdicts, lambda words: progress.share(1.0, words))
         complete = True
     except KeyboardInterrupt:
         print("\ninterrupted: writing what there is", file=sys.stderr)

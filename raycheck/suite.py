@@ -5,25 +5,30 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from oracles import kept
 from oracles.compare import Comparison, compare, difference
+from oracles.conventions import Convention, transfer_of
 from oracles.images import Picture
 from oracles.images.writing import png_bytes
+from oracles.inference import Exhibit, infer, worth_saying
 from oracles.truth import Truth, truth
 from oracles.verdict import USABLE, Pictures, Verdict
 from raycheck.formulas import formula_of
 from raycheck.known import Known
 from raycheck.lanes import best_lanes
 from raycheck.subjects import Attempt, Subject
+from reference_tracer.dialects import Dialect
 from reference_tracer.formulas.display import encode
 from scenes.catalogue import Rung
 from scenes.model import Scene
 
-Report = Callable[[Verdict, int, int], None]
+ROOM = 2**29
+"""Bytes of pictures kept for the search of conventions."""
 
 
 @dataclass(frozen=True)
@@ -44,17 +49,128 @@ class Plan:
         return scene.resized(*self.size) if self.size else scene
 
 
-def judge(subject: Subject, plan: Plan, folder: Path) -> Iterator[Verdict]:
-    """Verdicts in the ladder's order, pictures written to folder/images; truth is computed ahead."""
-    images = folder / "images"
-    images.mkdir(parents=True, exist_ok=True)
-    words: dict[str, str] = {}
-    with _Ahead(subject, plan) as ahead:
-        for rung in plan.rungs:
-            verdict = _settled(subject, plan, rung, words) or _asked(subject, plan, rung, ahead, images)
-            verdict = plan.known.apply(verdict)
+class Hearing:
+    """One subject before the suite: what it was asked, what it answered, and what that came to.
+
+    `verdicts` asks and judges by the declared dialect; `reconsidered` judges all again by the conventions that the
+    pictures follow, if these are others.
+    """
+
+    def __init__(self, subject: Subject, plan: Plan, folder: Path) -> None:
+        self.subject, self.plan = subject, plan
+        self.images = folder / "images"
+        self.images.mkdir(parents=True, exist_ok=True)
+        self.attempts: dict[str, Attempt] = {}
+        self.exhibits: dict[str, Exhibit] = {}
+        self.bytes = 0
+        self.failed: set[str] = set()
+
+    def verdicts(self) -> Iterator[Verdict]:
+        """Verdicts in the ladder's order, pictures written to folder/images; truth is computed ahead."""
+        words: dict[str, str] = {}
+        with _Ahead(self.subject, self.plan) as ahead:
+            for rung in self.plan.rungs:
+                verdict = _settled(self.subject, self.plan, rung, words)
+                if verdict is None:
+                    verdict = self._asked(rung, ahead)
+                elif self._worth_asking(verdict, words):
+                    self._asked(rung, ahead)
+                verdict = self.plan.known.apply(verdict)
+                words[rung.name] = verdict.verdict
+                yield verdict
+
+    def reconsidered(self, verdicts: Sequence[Verdict], told: Callable[[str], object]) -> list[Verdict]:
+        """The same verdicts, or those under the conventions that explain most pictures, which then come first."""
+        if not self.failed or len(self.exhibits) < 2:
+            return list(verdicts)
+        found = infer(list(self.exhibits.values()), self.subject.precision, self.subject.dialect, told)
+        if found == Convention(self.subject.dialect):
+            return list(verdicts)
+        again = {name: self._compared(exhibit, found) for name, exhibit in self.exhibits.items()}
+        before = {name: name not in self.failed for name in self.exhibits}
+        after = {name: comparison.word != "fail" for name, (_, comparison) in again.items()}
+        if not worth_saying(before, after):
+            return list(verdicts)
+        return [*self._findings(found, after), *self._under(found, again)]
+
+    def _worth_asking(self, verdict: Verdict, words: dict[str, str]) -> bool:
+        """A blocked rung's picture may still tell the convention, if what blocks it is a wrong picture."""
+        blocker = (verdict.blocked_by or "").removeprefix("image/")
+        return verdict.verdict == "blocked" and words.get(blocker) in ("fail", "blocked") and bool(self.exhibits)
+
+    def _asked(self, rung: Rung, ahead: _Ahead) -> Verdict:
+        """Render, compare, keep the pictures."""
+        attempt = self.subject.render(self.plan.scene(rung), self.plan.seed)
+        self.attempts[rung.name] = replace(attempt, picture=None)
+        expected = ahead.truth(rung)
+        if attempt.picture is None:
+            verdict = _start(rung, self.plan, attempt.word or "invalid", attempt.message)
+            pictures = _keep(self.images, rung.name, expected, None, None)
+            return verdict.model_copy(update=_evidence(attempt) | {"pictures": pictures})
+        comparison = compare(attempt.picture, expected)
+        self._exhibit(rung, expected, attempt.picture, comparison)
+        return self._verdict(rung, expected, attempt.picture, comparison)
+
+    def _exhibit(self, rung: Rung, expected: Truth, picture: Picture, comparison: Comparison) -> None:
+        """Keep a picture for the search of conventions, while there is room."""
+        self.bytes += 4 * picture.values.nbytes  # with its truth
+        if comparison.word == "fail":
+            self.failed.add(rung.name)
+        if self.bytes <= ROOM:
+            self.exhibits[rung.name] = Exhibit(picture, expected, comparison.outside)
+
+    def _verdict(self, rung: Rung, expected: Truth, picture: Picture, comparison: Comparison) -> Verdict:
+        linear = expected.scene.display == "srgb" and picture.maximum is None
+        more = "; a linear image is not asked for its display encoding" if linear else ""
+        verdict = _start(rung, self.plan, comparison.word, comparison.message + more)
+        pictures = _keep(self.images, rung.name, expected, picture, comparison)
+        evidence = _evidence(self.attempts[rung.name]) | {"judged": comparison.judged, "pictures": pictures}
+        return verdict.model_copy(update=evidence)
+
+    def _compared(self, exhibit: Exhibit, found: Convention) -> tuple[Truth, Comparison]:
+        """The picture judged under the conventions found."""
+        if found.slip.pixel:
+            expected = truth(exhibit.scene, self.subject.precision, "numpy", found.rules())
+        else:
+            expected = kept.truth(exhibit.scene, self.subject.precision, "numpy", found.dialect)
+        expected = replace(expected, transfer=transfer_of(found.slip))
+        return expected, compare(found.slip.undone(exhibit.picture), expected)
+
+    def _findings(self, found: Convention, after: dict[str, bool]) -> Iterator[Verdict]:
+        """What the pictures follow instead of what was declared: the first thing to mend, or to say."""
+        told = f"; {sum(after.values())} of {len(after)} pictures are right if that is allowed for"
+        if found.slip.words():
+            said = " and ".join(found.slip.words())
+            yield Verdict(check="convention/picture", verdict="fail", message=f"the pictures {said}{told}")
+        if found.dialect != self.subject.dialect:
+            lines = "; ".join(_changed(self.subject.dialect, found.dialect))
+            message = f"the pictures follow another dialect{told}; say so under [tracer.dialect]: {lines}"
+            yield Verdict(check="convention/dialect", verdict="fail", message=message)
+
+    def _under(self, found: Convention, again: dict[str, tuple[Truth, Comparison]]) -> Iterator[Verdict]:
+        """All rungs judged again."""
+        words: dict[str, str] = {}
+        for rung in self.plan.rungs:
+            verdict = _settled(self.subject, self.plan, rung, words) or self._judged_again(rung, found, again)
+            verdict = self.plan.known.apply(verdict)
             words[rung.name] = verdict.verdict
             yield verdict
+
+    def _judged_again(self, rung: Rung, found: Convention, again: dict[str, tuple[Truth, Comparison]]) -> Verdict:
+        if rung.name in again:
+            picture = found.slip.undone(self.exhibits[rung.name].picture)
+            return self._verdict(rung, again[rung.name][0], picture, again[rung.name][1])
+        attempt = self.attempts.get(rung.name)
+        if attempt is None:
+            return _start(rung, self.plan, "undecided", "was not asked: what it builds on failed at first")
+        verdict = _start(rung, self.plan, attempt.word or "undecided", attempt.message or "no room for its picture")
+        return verdict.model_copy(update=_evidence(attempt))
+
+
+def _changed(declared: Dialect, found: Dialect) -> list[str]:
+    """The lines of a manifest that turn the declared dialect into the one found."""
+    gone = [key for key in declared.other() if key not in found.other()]
+    return [*found.lines(), *(f"no line {key}" for key in gone)]
 
 
 class _Ahead:
@@ -76,7 +192,7 @@ class _Ahead:
             self.pool.shutdown(wait=True, cancel_futures=True)
 
     def _compute(self, rung: Rung) -> Truth:
-        return truth(self.plan.scene(rung), self.subject.precision, self.lanes)
+        return kept.truth(self.plan.scene(rung), self.subject.precision, self.lanes, self.subject.dialect)
 
     def truth(self, rung: Rung) -> Truth:
         """The truth of this rung, waiting for it if need be."""
@@ -113,23 +229,6 @@ def _settled(subject: Subject, plan: Plan, rung: Rung, words: dict[str, str]) ->
                 verdict = _start(rung, plan, "blocked", f"builds on image/{name}, which is {words[name]}")
                 return verdict.model_copy(update={"blocked_by": f"image/{name}"})
     return None
-
-
-def _asked(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path) -> Verdict:
-    """Render, compare, keep the pictures."""
-    attempt = subject.render(plan.scene(rung), plan.seed)
-    expected = ahead.truth(rung)
-    if attempt.picture is None:
-        verdict = _start(rung, plan, attempt.word or "invalid", attempt.message)
-        pictures = _keep(images, rung.name, expected, None, None)
-    else:
-        comparison = compare(attempt.picture, expected)
-        linear = expected.scene.display == "srgb" and attempt.picture.maximum is None
-        more = "; a linear image is not asked for its display encoding" if linear else ""
-        verdict = _start(rung, plan, comparison.word, comparison.message + more)
-        verdict = verdict.model_copy(update={"judged": comparison.judged})
-        pictures = _keep(images, rung.name, expected, attempt.picture, comparison)
-    return verdict.model_copy(update=_evidence(attempt) | {"pictures": pictures})
 
 
 def _evidence(attempt: Attempt) -> dict[str, object]:

@@ -42,6 +42,8 @@ def repeat_line(options: Namespace) -> str:
     for name in ("scene", "image", "precision"):
         if getattr(options, name) is not None:
             words += [f"--{name}", getattr(options, name)]
+    for word in options.dialect or ():
+        words += ["--dialect", word]
     if options.size:
         words += ["--size", options.size]
     if options.seed:

@@ -8,7 +8,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from raycheck.errors import UsageError
-from raycheck.subjects import Subject, attach, attach_command
+from raycheck.subjects import Subject, attach, attach_command, dialect_of
 from scenes.catalogue import rung
 from scenes.files import load
 from scenes.model import MAX_SIDE, Scene
@@ -25,20 +25,35 @@ def subject_of(options: Namespace) -> Subject:
     if not options.tracer:
         raise UsageError("no command follows --", "for example -- ./tracer {scene} {image}")
     return attach_command(
-        options.tracer, options.scene or "text", options.image or "pfm", options.precision or "float32"
+        options.tracer,
+        options.scene or "text",
+        options.image or "pfm",
+        options.precision or "float32",
+        dialect_words(options.dialect),
     )
+
+
+def dialect_words(said: list[str] | None) -> dict[str, str]:
+    """The KEY=VALUE words of --dialect."""
+    words: dict[str, str] = {}
+    for word in said or ():
+        key, equals, value = word.partition("=")
+        if not equals or key in words:
+            raise UsageError(f"--dialect {word}: not one new KEY=VALUE", "for example --dialect specular=blinn")
+        words[key] = value
+    return words
 
 
 def _attached(options: Namespace) -> Subject:
     """A SUBJECT; options that it states itself must not be given."""
-    own = ("scene", "image") if options.subject.startswith(("images:", "python:")) else ("scene", "image", "precision")
-    for name in own:
+    free = options.subject.startswith(("images:", "python:"))
+    for name in ("scene", "image") if free else ("scene", "image", "precision", "dialect"):
         if getattr(options, name) is not None:
             where = "raycheck.toml" if Path(options.subject).is_dir() else "SUBJECT"
-            raise UsageError(
-                f"--{name} {getattr(options, name)} does not go with {options.subject}", f"{where} says it"
-            )
-    return attach(options.subject, options.precision or "float32")
+            said = " ".join(options.dialect) if name == "dialect" else getattr(options, name)
+            raise UsageError(f"--{name} {said} does not go with {options.subject}", f"{where} says it")
+    dialect = dialect_of(dialect_words(options.dialect)).choices()
+    return attach(options.subject, options.precision or "float32", dialect)
 
 
 def command_line(options: Namespace) -> str:

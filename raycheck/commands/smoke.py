@@ -9,6 +9,7 @@ from oracles.truth import truth
 from raycheck.commands.options import subject_of
 from raycheck.errors import CONFORMS, DIFFERS
 from raycheck.subjects import Attempt, Subject
+from reference_tracer.dialects import rules
 from scenes.catalogue import rung
 from scenes.json_form import to_json
 from scenes.model import Scene
@@ -49,7 +50,7 @@ def _picture(subject: Subject, scene: Scene, attempt: Attempt) -> int:
     height, width, _ = picture.values.shape
     unit = "linear values" if picture.maximum is None else f"codes of 0..{picture.maximum}"
     print(f"# the image: {width}x{height}, {unit}; expected and got at three pixels:")
-    expected = truth(scene, subject.precision)
+    expected = truth(scene, subject.precision, rules=rules(subject.dialect))
     comparison = compare(picture, expected)
     for i, j in ((0, 0), (width // 2, height // 2), (width - 1, height - 1)):
         got = " ".join(f"{value:.9g}" for value in picture.values[j, i])

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
 from raycheck import manifest
 from raycheck.errors import UsageError
-from raycheck.manifest import Manifest
+from raycheck.manifest import DialectTable, Manifest
 from raycheck.subjects.command import CommandSubject
 from raycheck.subjects.images import ImagesSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
 from raycheck.subjects.subject import Subject
+from reference_tracer.dialects import SCENE_MODEL, Dialect
 
 FORMS = "a folder with raycheck.toml, builtin:reference, images:DIR, python:module:attr, or -- COMMAND"
 
 
-def attach(spec: str, precision: str = "float32") -> Subject:
-    """The subject of a SUBJECT argument; `precision` is that of images and Python objects."""
+def attach(spec: str, precision: str = "float32", dialect: Dialect = SCENE_MODEL) -> Subject:
+    """The subject of a SUBJECT argument; `precision` and `dialect` are those of images and Python objects."""
     kind, _, rest = spec.partition(":")
     match kind:
         case "builtin" if rest.split("/")[0] == "reference":
@@ -26,10 +28,10 @@ def attach(spec: str, precision: str = "float32") -> Subject:
         case "builtin":
             raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference")
         case "images":
-            return ImagesSubject(Path(rest), precision)
+            return ImagesSubject(Path(rest), precision, dialect)
         case "python" if rest.count(":") == 1:
             module, attribute = rest.split(":")
-            return PythonSubject(module, attribute, precision)
+            return PythonSubject(module, attribute, precision, dialect)
         case "python":
             raise UsageError(f"{spec}: not a Python object", "python:module:attr")
     folder = Path(spec)
@@ -38,11 +40,21 @@ def attach(spec: str, precision: str = "float32") -> Subject:
     return CommandSubject(folder.resolve(), manifest.load(folder), spec)
 
 
-def attach_command(words: list[str], scene: str, image: str, precision: str) -> Subject:
-    """A tracer given as its command line, without a manifest."""
+def attach_command(words: list[str], scene: str, image: str, precision: str, dialect: dict[str, str]) -> Subject:
+    """A tracer given as its command line, without a manifest; `dialect` holds the words of its table."""
     name = Path(words[0]).name[:200] or repr(words[0])
-    table = {"name": name, "render": tuple(words), "scene": scene, "image": image, "precision": precision}
+    table: dict[str, Any] = {"name": name, "render": tuple(words), "scene": scene, "image": image}
+    table |= {"precision": precision, "dialect": dialect_of(dialect)}
     try:
         return CommandSubject(Path.cwd(), Manifest.model_validate(table), spec="")
     except ValidationError as error:
         raise UsageError(f"the command after --: {manifest.explain(error)}") from None
+
+
+def dialect_of(words: dict[str, str]) -> DialectTable:
+    """The dialect of key=value words; raise UsageError naming the wrong one."""
+    values = {key: {"true": True, "false": False}.get(value, value) for key, value in words.items()}
+    try:
+        return DialectTable.model_validate(values)
+    except ValidationError as error:
+        raise UsageError(f"--dialect: {manifest.explain(error)}") from None

@@ -35,6 +35,7 @@ class CommandSubject:
         self.precision: str = self.manifest.precision
         self.scene_form: str = self.manifest.scene
         self.image_form: str = self.manifest.image
+        self.dialect = self.manifest.dialect.choices()
         self.features: tuple[str, ...] | None = self.manifest.features
         command = " ".join(self.manifest.render)
         for word in ("{scene}", "{image}"):

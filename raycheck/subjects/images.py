@@ -7,6 +7,7 @@ from pathlib import Path
 from oracles.images import ENDINGS, ImageError, read
 from raycheck.errors import UsageError
 from raycheck.subjects.subject import Attempt
+from reference_tracer.dialects import Dialect
 from scenes.model import Scene
 
 
@@ -17,13 +18,14 @@ class ImagesSubject:
     scene_form = ""
     features: tuple[str, ...] | None = None
 
-    def __init__(self, folder: Path, precision: str) -> None:
+    def __init__(self, folder: Path, precision: str, dialect: Dialect) -> None:
         if not folder.name or not folder.is_dir():
             raise UsageError(f"images:{folder}: no such folder", "a folder with one image a scene, named by the scene")
         self.folder = folder
         self.name = f"images in {folder.name}"
         self.spec = f"images:{folder}"
         self.precision = precision
+        self.dialect = dialect
         self.image_form = "any of " + ", ".join(ENDINGS)
 
     def prepare(self) -> None:

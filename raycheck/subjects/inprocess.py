@@ -18,6 +18,7 @@ from raycheck.errors import StartError, UsageError
 from raycheck.lanes import best_lanes
 from raycheck.subjects.subject import Attempt
 from reference_tracer import plain
+from reference_tracer.dialects import SCENE_MODEL, Dialect
 from reference_tracer.lanes import render as lanes
 from scenes.json_form import to_json
 from scenes.model import Scene
@@ -32,6 +33,7 @@ class ReferenceSubject:
     scene_form = ""
     image_form = ""
     features: tuple[str, ...] | None = None
+    dialect = SCENE_MODEL
 
     def __init__(self, spec: str) -> None:
         self.spec = f"builtin:{spec}"
@@ -71,11 +73,12 @@ class PythonSubject:
     image_form = "array"
     features: tuple[str, ...] | None = None
 
-    def __init__(self, module: str, attribute: str, precision: str) -> None:
+    def __init__(self, module: str, attribute: str, precision: str, dialect: Dialect) -> None:
         self.module, self.attribute = module, attribute
         self.spec = f"python:{module}:{attribute}"
         self.name = self.spec
         self.precision = precision
+        self.dialect = dialect
         self.tracer: Any = None
 
     def prepare(self) -> None:

@@ -7,6 +7,7 @@ from typing import Literal, Protocol
 
 from oracles.images import Picture
 from oracles.verdict import Process
+from reference_tracer.dialects import Dialect
 from scenes.model import Scene
 
 Problem = Literal["invalid", "crash", "timeout", "error", "unsupported"]
@@ -24,7 +25,7 @@ class Attempt:
 
 
 class Subject(Protocol):
-    """One tracer; `spec` is what attaches it again on the command line."""
+    """One tracer; `spec` is what attaches it again on the command line, `dialect` the conventions it declares."""
 
     name: str
     spec: str
@@ -33,6 +34,7 @@ class Subject(Protocol):
     image_form: str
     features: tuple[str, ...] | None
     in_process: bool
+    dialect: Dialect
 
     def prepare(self) -> None:
         """Build or load it; raise StartError if that fails."""

@@ -84,6 +84,15 @@ def enclose(
     return Enclosure(_picture(scene, mids), _picture(scene, radii), doubts.reshape(height, width).astype(np.int64))
 
 
+def render_pixels(scene: Scene, pixels: NDArray[np.int64], rules: Rulebook = LECTURE) -> NDArray[np.float64]:
+    """Some pixels only, counted row by row, on NumPy float64 lanes: (1, pixels, 3)."""
+    lanes = NumPyBackend(64)
+    front = Wavefront(scene, rules, lanes, Floats(), Tables(scene, lanes))
+    with np.errstate(all="ignore"):
+        colour, _ = front.colours(pixels)
+    return np.stack(np.broadcast_arrays(*colour), axis=-1)[None]
+
+
 def narrow(scene: Scene, found: Enclosure, u: float, offset: float, rules: Rulebook = LECTURE) -> Enclosure:
     """The same enclosure, its wide and doubtful pixels looked at again with affine forms and all their branches."""
     lanes = NumPyBackend(64)

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import raycheck.cli
-from raycheck import VERSION, session
+from raycheck import VERSION, suite
 from raycheck.commands import scenes as scenes_command
 from reports import results
 from scenes.catalogue import ladder
@@ -70,14 +70,14 @@ def test_exit_130_is_an_interrupt(raycheck: Raycheck, monkeypatch: pytest.Monkey
 def test_a_bug_midway_still_leaves_the_verdicts_found_until_then(
     raycheck: Raycheck, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    def two_and_a_bug(*arguments: object) -> Any:
-        verdicts = iter(judge(*arguments))
+    def two_and_a_bug(hearing: suite.Hearing) -> Any:
+        verdicts = ask(hearing)
         yield next(verdicts)
         yield next(verdicts)
         raise ZeroDivisionError
 
-    judge: Any = session.judge  # type: ignore[attr-defined]
-    monkeypatch.setattr(session, "judge", two_and_a_bug)
+    ask = suite.Hearing.verdicts
+    monkeypatch.setattr(suite.Hearing, "verdicts", two_and_a_bug)
     assert raycheck("check", "builtin:reference", "--size", "8x6", "--out", tmp_path).code == 4
     found = results.read(tmp_path)
     assert not found.complete

@@ -11,7 +11,7 @@ import pytest
 
 from raycheck.known import Known
 from raycheck.subjects import attach
-from raycheck.suite import Plan, judge
+from raycheck.suite import Hearing, Plan
 from reports.results import Results
 from scenes.catalogue import ladder, rung
 
@@ -76,7 +76,8 @@ def test_features_a_tracer_lacks_are_unsupported_and_named(attached: Attached, c
 def test_what_builds_on_an_unsupported_rung_is_unsupported_and_not_blocked(attached: Attached, tmp_path: Path) -> None:
     floor, ball = rung("headlight-plane"), replace(rung("headlight-sphere"), requires=("headlight-plane",))
     plan = Plan([floor, ball], (16, 12), 0, True, Known({}), "{scene}")
-    first, second = judge(attach(str(attached(BACKGROUND_ONLY, "features = []"))), plan, tmp_path / "report")
+    subject = attach(str(attached(BACKGROUND_ONLY, "features = []")))
+    first, second = Hearing(subject, plan, tmp_path / "report").verdicts()
     assert (first.verdict, second.verdict) == ("unsupported", "unsupported")
     assert "needs plane" in first.message
     assert "builds on image/headlight-plane" in second.message
