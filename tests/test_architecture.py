@@ -15,7 +15,12 @@ ROOT = Path(__file__).resolve().parents[1]
 ROOMS = ("scenes", "reference_tracer", "oracles", "reports", "raycheck")
 """From the cellar to the roof: a room imports from those before it."""
 SOURCES = sorted(path for room in ROOMS for path in (ROOT / room).rglob("*.py"))
-FORMULAS = sorted((ROOT / "reference_tracer" / "formulas").glob("*.py"))
+TRACER = ROOT / "reference_tracer"
+FORMULAS = [
+    *sorted((TRACER / "formulas").glob("*.py")),
+    TRACER / "methods" / "spheres.py",
+    TRACER / "methods" / "refractions.py",
+]
 
 
 def name_of(path: Path) -> str:
