@@ -37,7 +37,8 @@ def widen(x: Number) -> Number:
     if _is_drjit(x):
         import drjit as dr
 
-        return dr.float64_array_t(type(x))(x)
+        kind: Any = dr.float64_array_t(type(x))
+        return kind(x)
     return x
 
 
@@ -46,8 +47,8 @@ def narrow(x: Number, like: Number) -> Number:
     if isinstance(like, np.ndarray | np.floating):
         return np.asarray(x).astype(like.dtype)
     if _is_drjit(like):
-        real: Any = type(like)
-        return real(x)
+        narrowed: Any = type(like)
+        return narrowed(x)
     # a ball has not yet seen the rounding to the narrow type; times 1 adds it
     return x * 1.0 if isinstance(x, Ball) else x
 
