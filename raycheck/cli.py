@@ -24,6 +24,10 @@ SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|nu
 ARRAYS = """SUBJECT is python:module:attr with sphere(o, v, c, r) or refract(v, n, index) on arrays (trusted code);
 without it our own methods are measured."""
 
+TRACERS = (
+    """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]] or python:module:attr."""
+)
+
 
 class Parser(argparse.ArgumentParser):
     """Errors in one line, exit code 2; options are written out."""
@@ -99,6 +103,12 @@ def parser() -> Parser:
         "--out", default="raycheck-stability", metavar="DIR", help="where the report goes (%(default)s)"
     )
     stability.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (%(default)s)")
+
+    chart = _add(commands, "chart", "speed against accuracy: methods, number types, depth, whole tracers", TRACERS)
+    chart.add_argument("subjects", nargs="*", metavar="SUBJECT", help="tracers to race against ours")
+    chart.add_argument("--precision", choices=("float32", "float64"), help="what a Python object computes in (float32)")
+    chart.add_argument("--out", default="raycheck-chart", metavar="DIR", help="where the report goes (%(default)s)")
+    chart.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (%(default)s)")
 
     report = _add(commands, "report", "write a report again from its results")
     report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from raycheck import session
 from raycheck.errors import CONFORMS, UsageError
-from reports import results, stability
+from reports import chart, results, stability
 
 
 def run(options: Namespace) -> int:
@@ -16,6 +16,9 @@ def run(options: Namespace) -> int:
     try:
         if (folder / stability.FILE).exists():
             print(stability.write(stability.read(folder), folder))
+            return CONFORMS
+        if (folder / chart.FILE).exists():
+            print(chart.write(chart.read(folder), folder))
             return CONFORMS
         found = results.read(folder)
     except results.ResultsError as error:
