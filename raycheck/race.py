@@ -60,7 +60,7 @@ def points(subjects: Sequence[Subject], seed: int, tell: Callable[[str], None]) 
     scene = rung(SCENE).scene().resized(*SIZE)
     exact = certified.render_exact(scene).value
     tell("the exact picture")
-    runners = [_Runner(subject) for subject in subjects]
+    runners = [_Runner(subject, message=_unable(subject, scene)) for subject in subjects]
     _race(runners, scene, seed, tell)
     truths = {p: truth(scene, p, best_lanes()) for p in {runner.subject.precision for runner in runners}}
     found = [
@@ -69,6 +69,12 @@ def points(subjects: Sequence[Subject], seed: int, tell: Callable[[str], None]) 
     base = next((p.seconds for p in found if p.baseline), found[0].seconds if found else 1.0)
     told = [f"{runner.subject.name}: {runner.message}" for runner in runners if runner.picture is None]
     return [p.model_copy(update={"ratio": p.seconds / base}) for p in found], told
+
+
+def _unable(subject: Subject, scene: Scene) -> str:
+    """Why the scene is not asked of this tracer; empty if it is."""
+    missing = sorted(scene.features - set(subject.features)) if subject.features is not None else []
+    return f"unsupported: {scene.name} needs {', '.join(missing)}" if missing else ""
 
 
 def _race(runners: Sequence[_Runner], scene: Scene, seed: int, tell: Callable[[str], None]) -> None:
@@ -86,7 +92,8 @@ def _race(runners: Sequence[_Runner], scene: Scene, seed: int, tell: Callable[[s
             nothing = runner.subject.render(empty, seed)
             if k:
                 runner.full.append(attempt.seconds)
-                runner.empty.append(nothing.seconds)
+                # one that cannot do without objects is charged with its start
+                runner.empty.append(nothing.seconds if nothing.picture else 0.0)
         tell(f"tracers, round {k} of {ROUNDS}")
 
 

@@ -12,12 +12,13 @@ import numpy as np
 from oracles.chart import depth, panels, pareto
 from raycheck import VERSION, race
 from raycheck.commands.options import command_line
-from raycheck.errors import CONFORMS
+from raycheck.errors import CONFORMS, UsageError
 from raycheck.lanes import best_lanes
 from raycheck.machine import machine
 from raycheck.progress import Progress
 from raycheck.session import make_folder
 from raycheck.subjects import Subject, attach
+from raycheck.subjects.images import ImagesSubject
 from reports import chart
 from reports.measured import duration, number
 
@@ -26,7 +27,7 @@ STEPS = 2 * panels.ROUNDS + depth.ROUNDS + race.ROUNDS + len(panels.STRATA) + 6
 
 def run(options: Namespace) -> int:
     """Measure, write, tell the frontiers."""
-    subjects = [attach(spec, options.precision or "float32") for spec in options.subjects]
+    subjects = [_timed(attach(spec, options.precision or "float32")) for spec in options.subjects]
     folder = Path(options.out)
     make_folder(folder)
     for subject in subjects:
@@ -43,6 +44,13 @@ def run(options: Namespace) -> int:
         print(f"no dot: {remark}")
     print(f"report: {path}")
     return CONFORMS
+
+
+def _timed(subject: Subject) -> Subject:
+    """The subject; pictures that somebody rendered before have no time and are refused."""
+    if isinstance(subject, ImagesSubject):
+        raise UsageError(f"{subject.spec} takes no time", "a tracer that renders: a folder with raycheck.toml")
+    return subject
 
 
 def measure(subjects: list[Subject], seed: int, command: str) -> chart.Chart:

@@ -72,3 +72,17 @@ def test_a_subject_that_is_none_is_refused_before_anything_is_measured(
 ) -> None:
     assert main(["chart", str(tmp_path / "nowhere"), "--out", str(tmp_path)]) == 2
     assert "no such folder" in capsys.readouterr().err
+
+
+def test_pictures_that_are_there_already_take_no_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["chart", f"images:{tmp_path}", "--out", str(tmp_path / "out")]) == 2
+    assert "takes no time" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_tracer_that_lacks_a_feature_is_not_raced(monkeypatch: pytest.MonkeyPatch) -> None:
+    subject = race.ours()[0]
+    monkeypatch.setattr(subject, "features", ("plane",), raising=False)
+    points, remarks = race.points([subject], 0, lambda what: None)
+    assert points == []
+    assert "unsupported: lecture-final needs" in remarks[0]
