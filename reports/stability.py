@@ -19,6 +19,10 @@ FILE = "stability.json"
 PAGE = "index.html"
 
 
+SHORT = {"distance": "hit points good to r/1000", "decision": "hits and misses right"}
+"""Questions in the page's first sentences."""
+
+
 class Stability(Frozen):
     """One measurement of our methods and, where given, of a tracer's."""
 
@@ -130,7 +134,8 @@ def sentences(found: Stability) -> list[str]:
             first = next((f for f in own if f.method == (found.subject or "lecture")), None)
             if first and rivals:
                 best = max(rivals, key=lambda f: f.reach or 0.0)
-                parts.append(f"{question.title.lower()} {_holds(first)} ({best.method}: {measured.number(best.reach)})")
+                what = SHORT.get(question.name, question.title)
+                parts.append(f"{what} {_holds(first)} ({best.method}: {measured.number(best.reach)})")
         if parts:
             told.append(f"{found.subject or 'The lecture'} in {precision}: {'; '.join(parts)}")
     return told

@@ -115,8 +115,8 @@ def test_the_committed_schema_is_the_generated_one_and_accepts_the_file(found: S
 
 def test_the_page_shows_every_part(found: Stability) -> None:
     text = stability.render(found)
-    assert "The lecture in float32: hit point up to D = 63 (haines: 5,000)" in text
-    assert "The lecture in float64: hit point at no distance (haines: 2·10¹²)" in text
+    assert "The lecture in float32: hit points good to r/1000 up to D = 63 (haines: 5,000)" in text
+    assert "The lecture in float64: hit points good to r/1000 at no distance (haines: 2·10¹²)" in text
     assert "fails at once" in text
     assert "beyond 2·10¹²" in text
     assert ">25%<" in text  # a cell of wrong decisions
