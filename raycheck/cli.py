@@ -21,6 +21,13 @@ SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|nu
 (one image a scene), python:module:attr (trusted code), or nothing and the tracer's command after --:
   raycheck check -- ./tracer {scene} {image}"""
 
+ARRAYS = """SUBJECT is python:module:attr with sphere(o, v, c, r) or refract(v, n, index) on arrays (trusted code);
+without it our own methods are measured."""
+
+TRACERS = (
+    """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]] or python:module:attr."""
+)
+
 
 class Parser(argparse.ArgumentParser):
     """Errors in one line, exit code 2; options are written out."""
@@ -88,6 +95,20 @@ def parser() -> Parser:
     scenes = _add(commands, "scenes", "list the catalogue, or print one scene")
     scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
     scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")
+
+    stability = _add(commands, "stability", "where methods fail: maps, frontiers, named cases", ARRAYS)
+    stability.add_argument("subject", nargs="?", metavar="SUBJECT", help="a tracer to ask as well")
+    stability.add_argument("--precision", choices=("float32", "float64"), help="what SUBJECT computes in (float32)")
+    stability.add_argument(
+        "--out", default="raycheck-stability", metavar="DIR", help="where the report goes (%(default)s)"
+    )
+    stability.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (%(default)s)")
+
+    chart = _add(commands, "chart", "speed against accuracy: methods, number types, depth, whole tracers", TRACERS)
+    chart.add_argument("subjects", nargs="*", metavar="SUBJECT", help="tracers to race against ours")
+    chart.add_argument("--precision", choices=("float32", "float64"), help="what a Python object computes in (float32)")
+    chart.add_argument("--out", default="raycheck-chart", metavar="DIR", help="where the report goes (%(default)s)")
+    chart.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (%(default)s)")
 
     report = _add(commands, "report", "write a report again from its results")
     report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")

@@ -64,7 +64,12 @@ def tail(raw: str) -> str:
 
 def results(raw: Results) -> Results:
     """The same results with every string plain, keys of mappings included."""
-    return Results.model_validate(_walk(raw.model_dump(), ""))
+    return Results.model_validate(walk(raw.model_dump()))
+
+
+def walk(value: Any) -> Any:
+    """Nested data with every string in it plain."""
+    return _walk(value, "")
 
 
 _FIELDS = {"message": paragraph, "output_tail": tail, "reproduce": command, "command": command}

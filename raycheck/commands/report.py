@@ -1,4 +1,4 @@
-"""raycheck report: the pages again, from results.json and the pictures beside it."""
+"""raycheck report: the pages again, from what was found or measured."""
 
 from __future__ import annotations
 
@@ -7,13 +7,19 @@ from pathlib import Path
 
 from raycheck import session
 from raycheck.errors import CONFORMS, UsageError
-from reports import results
+from reports import chart, results, stability
 
 
 def run(options: Namespace) -> int:
     """Read, write, name the page."""
     folder = Path(options.folder)
     try:
+        if (folder / stability.FILE).exists():
+            print(stability.write(stability.read(folder), folder))
+            return CONFORMS
+        if (folder / chart.FILE).exists():
+            print(chart.write(chart.read(folder), folder))
+            return CONFORMS
         found = results.read(folder)
     except results.ResultsError as error:
         raise UsageError(str(error)) from None

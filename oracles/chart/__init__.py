@@ -1,0 +1,1 @@
+"""Speed against accuracy: every method in every arithmetic, timed side by side and judged by exact truth."""

@@ -1,0 +1,1 @@
+"""Where methods fail: strata of inputs, exact truth for each, error maps and failure frontiers."""
