@@ -105,10 +105,12 @@ def _back(given: Crossing, t: Reals, n: Reals, index: Reals, ask: Ask, dice: Dic
 
     The first error grows by eta in the tangent and by sinθ1/cosθ1 in the normal part; the second has θ1 for its θ2.
     """
-    again = ask("refract", table(dice.round(t), n, index))
+    total = np.isnan(t)
+    t = np.where(total, given.v, t)  # where there is no ray, none can be asked about
+    again = np.where(total, np.nan, ask("refract", table(dice.round(t), n, index)))
     with np.errstate(divide="ignore"):
         slope = 1.0 + 1.0 / given.cos1
-    second = crossing(np.where(np.isnan(t), given.v, t), n, index, dice.u)
+    second = crossing(t, n, index, dice.u)
     restored = 4.0 * (dice.u + JUDGE) * slope * (1.0 + given.eta) + 2.0 * np.minimum(
         6.0 * dice.u / np.maximum(second.sin1, dice.u), 3.0 * np.sqrt(dice.u)
     ) * np.maximum(given.eta, 1.0)
