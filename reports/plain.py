@@ -67,7 +67,7 @@ def results(raw: Results) -> Results:
     return Results.model_validate(_walk(raw.model_dump(), ""))
 
 
-_FIELDS = {"message": paragraph, "output_tail": tail, "reproduce": command, "command": command}
+_FIELDS = {"message": paragraph, "output_tail": tail, "reproduce": command, "command": command, "run": command}
 
 
 def _single(raw: str) -> str:

@@ -46,7 +46,8 @@ class Reading:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             error = np.abs(got - expected)
             ratio = np.where(error == 0.0, 0.0, error / bound)
-        ratio = np.where(np.isnan(ratio), np.inf, ratio)
+        missing = np.where(np.isnan(got) & np.isnan(expected), 0.0, np.inf)  # two answers may agree that there is none
+        ratio = np.where(np.isnan(ratio), missing, ratio)
         return np.where(bound == np.inf, 0.0, ratio)
 
     def excess(self) -> Reals:

@@ -11,7 +11,6 @@ import numpy as np
 
 from oracles.laws import NoAnswerError
 from oracles.laws.cases import Question
-from raycheck.errors import StartError
 from raycheck.probes import wire
 from raycheck.probes.channel import BrokenOffError, Channel
 from raycheck.probes.prober import Reals
@@ -51,7 +50,10 @@ class ProbeClient:
             try:
                 self.channel = Channel(self.command, self.folder, self.patience)
             except OSError as error:
-                raise StartError(f"probe {self.command[0]!r} cannot be started: {error.strerror}") from None
+                raise NoAnswerError(
+                    "error",
+                    f"probe {self.command[0]!r} cannot be started: {error.strerror}; check the path in raycheck.toml",
+                ) from None
             self.operations = wire.hello(self._say(f"{wire.HELLO}\n".encode(), 1)[0], self.precision)
         return self.operations
 

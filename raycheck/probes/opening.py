@@ -18,5 +18,6 @@ def prober_of(subject: Subject) -> Prober | None:
         case ReferenceSubject():
             return ReferenceProber(subject.arithmetic, subject.bits)
         case PythonSubject():
-            return PythonProber(lambda: subject.tracer, subject.module, subject.attribute, subject.precision)
+            prober = PythonProber(lambda: subject.tracer, subject.module, subject.attribute, subject.precision)
+            return prober if prober.open() else None
     return None
