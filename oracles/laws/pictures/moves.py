@@ -13,6 +13,8 @@ from scenes.model import Scene
 ORDER = "Ray Tracing Depth Sorting"
 CAMERA = "Ray Vector Calculation"
 VIEW = "Modifying Viewpoint in RT Example"
+SECONDARY = {"shadow", "reflect", "refract"}
+"""Features that need rays after the eye ray."""
 
 
 def same(v: Vector) -> Vector:
@@ -122,9 +124,10 @@ def _times(v: Vector, factor: float) -> Vector:
 def translate(dice: Dice, studio: Studio) -> Sight:
     """Only differences of positions enter. d is made of whole numbers: the moved numbers are exact.
 
-    The tolerance grows with the distance from the origin as that of any tracer does that forms points in the world.
+    Local light only: how far a secondary ray must step off its surface grows with the distance from the origin, and
+    a tracer's least distance is made for worlds of the catalogue's size.
     """
-    scene = stage(dice, studio.features)
+    scene = stage(dice, studio.features - SECONDARY)
     dx, dy, dz = (float(np.round(x)) for x in 2.0 + dice.point(6.0)[0])
     other = moved(scene, lambda p: (p[0] + dx, p[1] + dy, p[2] + dz), same)
     return studio.show(other) - studio.show(scene)
@@ -150,11 +153,11 @@ def mirror_world(dice: Dice, studio: Studio) -> Sight:
 
 @law("image/scale", "a world of twice the size looks the same", VIEW, "all lengths · 2")
 def scale(dice: Dice, studio: Studio) -> Sight:
-    """Directions do not change, and the lamps do not fade with distance.
+    """Directions do not change, and the lamps do not fade with distance; twice is exact.
 
-    Twice is exact; a least distance that the tracer keeps is half as long in the larger world.
+    Local light only, for the reason given for the moved world.
     """
-    scene = stage(dice, studio.features)
+    scene = stage(dice, studio.features - SECONDARY)
     return studio.show(moved(scene, lambda p: _times(p, 2.0), same, 2.0)) - studio.show(scene)
 
 
