@@ -74,7 +74,7 @@ def involution(dice: Dice, ask: Ask) -> Reading:
 
 @law("reflect/normal-incidence", "along the normal it comes straight back", SLIDE, "r(n, n) = n")
 def normal_incidence(dice: Dice, ask: Ask) -> Reading:
-    """The one case in which r = i."""
+    """The one case in which r = i: all of i lies along n, and nothing is reversed."""
     n = dice.round(dice.frame()[0])
     bound = 18.0 * dice.u + 8.0 * excess_of_unit(n)
     return Reading("r", ask("reflect", table(n, n)), n, bound)

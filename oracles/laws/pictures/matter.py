@@ -19,7 +19,7 @@ BRANCHES = "Refraction with geo.tr vector"
     "depth 0 = depth 3",
 )
 def depth_without_branches(dice: Dice, studio: Studio) -> Sight:
-    """No path is longer than the eye ray."""
+    """No path is longer than the eye ray, so every depth draws the same."""
     scene = lit(dice)
     return studio.show(scene.with_depth(3)) - studio.show(scene.with_depth(0))
 
@@ -71,7 +71,7 @@ def weight_zero(dice: Dice, studio: Studio) -> Sight:
     "S = 0: s does not matter",
 )
 def shininess_unused(dice: Dice, studio: Studio) -> Sight:
-    """The highlight is weighed by S alone."""
+    """The highlight is weighed by S alone, so no exponent can bring light into a surface without it."""
     scene = recoloured(lit(dice), specular=lambda m: BLACK)
     return studio.show(recoloured(scene, shininess=lambda m: 77)) - studio.show(scene)
 
