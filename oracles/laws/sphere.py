@@ -107,7 +107,7 @@ def sees_miss(dice: Dice, ask: Ask) -> Reading:
     return Reading("hit (1) or miss (0)", hit_flags(answers), zeros, wide(zeros, truth.outside))
 
 
-@law("sphere/centre", "a ray at the centre of a sphere hits it at |o - c| - r", SPHERE, "λ = |b| - r")
+@law("sphere/centre", "a ray at the centre of a sphere hits it one radius before the centre", SPHERE, "λ = |b| - r")
 def centre(dice: Dice, ask: Ask) -> Reading:
     """The closed form of the simplest hit.
 
