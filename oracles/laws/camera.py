@@ -50,7 +50,7 @@ def rays(ask: Ask, i: Reals, j: Reals) -> Reals:
 
 def pixels(dice: Dice) -> tuple[Reals, Reals]:
     """Pixels (i, j) that have a mirror image about the middle: 1 <= i < width, 1 <= j < height."""
-    return 1.0 + dice.choice(WIDTH - 1), 1.0 + dice.choice(HEIGHT - 1)
+    return (1 + dice.choice(WIDTH - 1)).astype(np.float64), (1 + dice.choice(HEIGHT - 1)).astype(np.float64)
 
 
 def bounds(dice: Dice) -> Reals:

@@ -72,7 +72,8 @@ class Crossing:
         slide = np.minimum(6.0 * self.u / np.maximum(self.sin1, self.u), 3.0 * np.sqrt(self.u)) / self.eta
         with np.errstate(divide="ignore"):
             plain = 2.0 * (self.u + 4.0 * JUDGE) * (1.0 + 1.0 / self.cos2) * (1.0 + 1.0 / self.eta)
-        return SAFETY * (plain + slide)
+        bound: Reals = SAFETY * (plain + slide)
+        return bound
 
 
 def crossing(v: Reals, n: Reals, index: Reals, u: float) -> Crossing:

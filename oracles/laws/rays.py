@@ -62,12 +62,14 @@ class Roots:
     @property
     def hits_near(self) -> Flags:
         """The near root is the answer, beyond doubt."""
-        return self.inside & (self.near > NEAR + self.dt)
+        sure: Flags = self.inside & (self.near > NEAR + self.dt)
+        return sure
 
     @property
     def hits_far(self) -> Flags:
         """The near root lies behind and the far one is the answer, beyond doubt."""
-        return self.inside & (self.near < -self.dt) & (self.far > NEAR + self.dt)
+        sure: Flags = self.inside & (self.near < -self.dt) & (self.far > NEAR + self.dt)
+        return sure
 
     @property
     def misses(self) -> Flags:
