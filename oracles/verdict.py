@@ -85,6 +85,22 @@ class Pictures(Frozen):
     difference: str | None = None
 
 
+class Case(Frozen):
+    """The plainest case found that breaks a law, or the question that brought no usable answer.
+
+    quantity: what the numbers are; |got - expected| <= bound was to hold (none of them where there was no answer);
+    excess: the error in bounds; regime: the kind of case; run: one command that asks this case again.
+    """
+
+    quantity: str
+    expected: float | None = None
+    bound: float | None = None
+    got: float | None = None
+    excess: float | None = None
+    regime: str = ""
+    run: str = ""
+
+
 class Verdict(Frozen):
     """One check of one subject."""
 
@@ -98,6 +114,7 @@ class Verdict(Frozen):
     blocked_by: str | None = None
     reproduce: str = ""
     judged: Judged | None = None
+    case: Case | None = None
     process: Process | None = None
     pictures: Pictures = Pictures()
     seconds: float = 0.0

@@ -50,7 +50,13 @@ def parser() -> Parser:
 
     check = _add(commands, "check", "run the conformance suite against a tracer", SUBJECT)
     _subject(check)
-    check.add_argument("--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes)")
+    check.add_argument(
+        "--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes), and no laws"
+    )
+    check.add_argument("--laws", metavar="A,B", help="only these laws or groups of laws (see docs/laws.md)")
+    check.add_argument(
+        "--explore", type=int, default=0, metavar="N", help="N more cases of each law, by chance (%(default)s)"
+    )
     check.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")
     check.add_argument("--out", default="raycheck-report", metavar="DIR", help="where the report goes (%(default)s)")
     check.add_argument("--seed", type=int, default=0, metavar="N", help="handed to the tracer as {seed} (%(default)s)")

@@ -71,5 +71,7 @@ def load(path: Path | None, checks: set[str]) -> Known:
         raise UsageError(f"{path}: not TOML: {error}") from None
     for entry in entries:
         if entry.check not in checks:
-            raise UsageError(f"{path}: no check is called {entry.check!r}", "names as in the report: image/SCENE")
+            raise UsageError(
+                f"{path}: no check is called {entry.check!r}", "names as in the report: image/SCENE, law/NAME"
+            )
     return Known({entry.check: entry for entry in entries})

@@ -180,3 +180,28 @@ def clean(output: bytes) -> str:
     text = _ESCAPES.sub("", output.decode("utf-8", "replace"))
     text = "".join(c for c in text if c in "\n\t" or c.isprintable())
     return text[-TAIL:].strip()
+
+
+def start(command: Sequence[str], cwd: Path, file_limit: int) -> subprocess.Popen[bytes]:
+    """Start a program that is talked to, its three streams as pipes; raise OSError if it cannot start."""
+    with _interrupts_held():
+        child = subprocess.Popen(
+            list(command),
+            cwd=cwd,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            env=own_environment(),
+        )
+    _limit(child.pid, file_limit)
+    return child
+
+
+def stop(child: subprocess.Popen[bytes]) -> None:
+    """End a started program with its whole group, and close its streams."""
+    _kill(child)
+    for stream in (child.stdin, child.stderr):
+        if stream is not None:
+            with contextlib.suppress(OSError):  # what was not yet sent has nowhere to go
+                stream.close()

@@ -17,6 +17,10 @@ class Progress:
         self.done += 1
         self.share(self.done / max(1, self.total), f"{self.done}/{self.total} {what}")
 
+    def say(self, what: str) -> None:
+        """What is being done."""
+        self.share(min(1.0, self.done / max(1, self.total)), what)
+
     def share(self, share: float, what: str = "") -> None:
         """So much is done, from 0 to 1."""
         if self.shown:

@@ -15,6 +15,7 @@ from oracles.verdict import Verdict
 from raycheck import VERSION
 from raycheck.errors import CONFORMS, DIFFERS, INTERRUPTED, UsageError
 from raycheck.known import Known
+from raycheck.laws import LawPlan, judge_laws
 from raycheck.machine import machine
 from raycheck.progress import Progress
 from raycheck.subjects import Subject
@@ -22,6 +23,9 @@ from raycheck.suite import Hearing, Plan
 from reports import junit, page, results, summary
 from scenes.catalogue import Rung, catalogue_hash, ladder, rung
 
+ONE_SCENE, ONE_LAW = "--scenes {scene}", "--laws {law}"
+"""Options that ask one check again."""
+NO_LAWS = LawPlan()
 WRITABLE = "a folder that can be written, with --out DIR"
 
 
@@ -38,6 +42,7 @@ class Order:
     known: Known
     command: str
     repeat: str
+    laws: LawPlan = NO_LAWS
 
 
 def check(order: Order) -> tuple[results.Results, int]:
@@ -49,13 +54,16 @@ def check(order: Order) -> tuple[results.Results, int]:
     order.subject.prepare()
     verdicts: list[Verdict] = []
     complete = False
-    progress = Progress(f"checking {order.subject.name}", len(plan.rungs))
+    progress = Progress(f"checking {order.subject.name}", _planned(order, plan))
     try:
         hearing = Hearing(order.subject, plan, order.out)
         for verdict in hearing.verdicts():
             verdicts.append(verdict)
             progress.step(verdict.check)
-        verdicts = hearing.reconsidered(verdicts, lambda words: progress.share(1.0, words))
+        verdicts = hearing.reconsidered(verdicts, progress.say)
+        for verdict in judge_laws(order.subject, order.laws, hearing.convention, tuple(verdicts), order.out):
+            verdicts.append(verdict)
+            progress.step(verdict.check)
         complete = True
     except KeyboardInterrupt:
         print("\ninterrupted: writing what there is", file=sys.stderr)
@@ -72,6 +80,10 @@ def check(order: Order) -> tuple[results.Results, int]:
     return found, CONFORMS if found.conforms else DIFFERS
 
 
+def _planned(order: Order, plan: Plan) -> int:
+    return len(plan.rungs) + order.laws.planned(order.subject)
+
+
 def _results(
     order: Order, plan: Plan, verdicts: Sequence[Verdict], complete: bool, started: str, begin: float
 ) -> results.Results:
@@ -84,7 +96,7 @@ def _results(
         seed=order.seed,
         size=f"{order.size[0]}x{order.size[1]}" if order.size else None,
         seconds=time.monotonic() - begin,
-        planned=len(plan.rungs),
+        planned=_planned(order, plan),
         verdicts=tuple(verdicts),
         complete=complete,
     )
@@ -108,10 +120,10 @@ def tell(found: results.Results, folder: Path) -> None:
         print(f"report: {folder / 'index.html'}")
 
 
-def repeat_line(words: Sequence[str], tail: Sequence[str]) -> str:
-    """The call `raycheck words --scenes {scene} tail`; {scene} is filled in by format, other braces are doubled."""
+def repeat_line(words: Sequence[str], tail: Sequence[str], asked: str = ONE_SCENE) -> str:
+    """The call `raycheck words --scenes {scene} tail`; the name is filled in by format, braces are doubled."""
     before, after = (shlex.join(part).replace("{", "{{").replace("}", "}}") for part in (words, tail))
-    return f"raycheck {before} --scenes {{scene}} {after}".rstrip()
+    return f"raycheck {before} {asked} {after}".rstrip()
 
 
 def chosen(names: Sequence[str] | None) -> list[Rung]:

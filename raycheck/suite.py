@@ -53,7 +53,7 @@ class Hearing:
     """One subject before the suite: what it was asked, what it answered, and what that came to.
 
     `verdicts` asks and judges by the declared dialect; `reconsidered` judges all again by the conventions that the
-    pictures follow, if these are others.
+    pictures follow, if these are others. `convention`: what it is judged by.
     """
 
     def __init__(self, subject: Subject, plan: Plan, folder: Path) -> None:
@@ -64,6 +64,7 @@ class Hearing:
         self.exhibits: dict[str, Exhibit] = {}
         self.bytes = 0
         self.failed: set[str] = set()
+        self.convention = Convention(subject.dialect)
 
     def verdicts(self) -> Iterator[Verdict]:
         """Verdicts in the ladder's order, pictures written to folder/images; truth is computed ahead."""
@@ -91,6 +92,7 @@ class Hearing:
         after = {name: comparison.word != "fail" for name, (_, comparison) in again.items()}
         if not worth_saying(before, after):
             return list(verdicts)
+        self.convention = found
         return [*self._findings(found, after), *self._under(found, again)]
 
     def _worth_asking(self, verdict: Verdict, words: dict[str, str]) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-from oracles.verdict import Judged, Verdict, Word
+from oracles.verdict import Case, Judged, Verdict, Word
 from reports import conclusion, format, plain
 from reports.results import Results
 from scenes.disk import write_whole
@@ -88,11 +88,23 @@ def _evidence(verdict: Verdict) -> Iterator[str]:
         yield f"blocked by: {verdict.blocked_by}"
     if verdict.judged:
         yield from _numbers(verdict.judged)
+    if verdict.case:
+        yield from _case_told(verdict.case)
     if verdict.process:
         yield f"process: {format.shell(verdict.process.command)}: {verdict.process.status}"
         yield verdict.process.output_tail
     if verdict.reproduce:
         yield f"run again: {verdict.reproduce}"
+
+
+def _case_told(case: Case) -> Iterator[str]:
+    if case.expected is not None and case.bound is not None and case.got is not None:
+        yield (
+            f"{case.quantity}: expected {format.value(case.expected)} ± {format.measure(case.bound)}, "
+            f"got {format.value(case.got)}"
+        )
+    if case.run:
+        yield f"this case: {case.run}"
 
 
 def _numbers(judged: Judged) -> Iterator[str]:

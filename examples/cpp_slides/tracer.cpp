@@ -2,11 +2,13 @@
 // with four of their slips left in (marked SLIP): it is wrong on purpose.
 //
 //   ./tracer scene.txt image.ppm
+//   ./tracer --probe          (answers formula by formula, a line for a line)
 //
 // Reads raycheck's text scenes, writes 8-bit PPM. One file, no library.
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -228,12 +230,79 @@ void write_ppm(const char* path, const Scene& s, const std::vector<Vec>& pixels)
     if (!file) throw std::string("cannot write ") + path;
 }
 
+// ---------------------------------------------------------------- formula by formula
+std::ostream& operator<<(std::ostream& out, Vec v) { return out << v.x << ' ' << v.y << ' ' << v.z; }
+
+// One line of answer to one line of question; Scene: what camera and trace are asked about
+void answer(const std::string& line, Scene& scene) {
+    std::istringstream in(line);
+    std::ostream& out = std::cout;
+    std::string word, path;
+    Vec a, b, c;
+    int i, j;
+    in >> word;
+    if (word == "hello") {
+        out << "raycheck 1 cpp_slides float" << 8 * sizeof(real) << " sphere plane normal reflect refract phong camera trace";
+    } else if (word == "sphere" || word == "plane") {
+        Object obj;
+        obj.sphere = word == "sphere";
+        in >> a >> b >> obj.v >> obj.s;
+        real t = distance(obj, a, b);
+        if (t < INFINITE) out << t;
+        else out << "miss";
+    } else if (word == "normal") {
+        Object obj;
+        in >> a >> obj.v >> obj.s;
+        out << normal(obj, a);
+    } else if (word == "reflect") {
+        in >> a >> b;
+        out << reflection(a, b);
+    } else if (word == "refract") {
+        real index;
+        in >> a >> b >> index;
+        if (refraction(a, b, index, c)) out << c;
+        else out << "tir";
+    } else if (word == "phong") {
+        real s;
+        in >> a >> b >> c >> s;
+        real cosine = dot(a, b), gloss = dot(reflection(a, b), -c);
+        gloss = cosine > 0 && gloss > 0 ? std::pow(gloss, s) : 0;  // SLIP: the cosine is not clamped
+        out << cosine << ' ' << gloss;
+    } else if (word == "scene") {
+        std::getline(in >> std::ws, path);
+        scene = read_scene(path.c_str());
+        out << "ok";
+    } else if (word == "camera") {
+        in >> i >> j;
+        out << ray(scene, i, j);
+    } else if (word == "trace") {
+        in >> a >> b;
+        out << find_rgb(scene, a, b, 0);
+    } else {
+        out << "unsupported";
+    }
+    out << '\n';
+}
+
+int probe() {
+    std::ios::sync_with_stdio(false);
+    std::cout << std::setprecision(17);
+    Scene scene;
+    std::string line;
+    while (std::getline(std::cin, line)) {
+        answer(line, scene);
+        if (std::cin.rdbuf()->in_avail() <= 0) std::cout.flush();  // nobody waits for what is not flushed
+    }
+    return 0;
+}
+
 int main(int argc, char** argv) {
-    if (argc != 3) {
-        std::cerr << "usage: tracer scene.txt image.ppm\n";
+    if (argc != 3 && !(argc == 2 && std::string(argv[1]) == "--probe")) {
+        std::cerr << "usage: tracer scene.txt image.ppm | tracer --probe\n";
         return 2;
     }
     try {
+        if (argc == 2) return probe();
         Scene s = read_scene(argv[1]);
         std::vector<Vec> pixels;
         for (int j = 0; j < s.height; j++)

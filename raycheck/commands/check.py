@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Sequence
 from pathlib import Path
 
 from raycheck import known, session
 from raycheck.commands.options import command_line, size_of, subject_of
 from raycheck.errors import UsageError
+from raycheck.laws import LawPlan, all_laws, check_names, chosen
+from raycheck.laws.plan import AnyLaw
 from scenes.catalogue import ladder
 
 
 def run(options: Namespace) -> int:
     """Check, tell, and return the exit code."""
     subject = subject_of(options)
-    scenes = options.scenes.split(",") if options.scenes is not None else None
-    if scenes == [""]:
-        raise UsageError("--scenes is empty", "names from `raycheck scenes`, separated by commas")
-    checks = {f"image/{rung.name}" for rung in ladder()}
+    scenes = _names(options.scenes, "--scenes", "names from `raycheck scenes`, separated by commas")
+    laws = _names(options.laws, "--laws", "names from docs/laws.md, separated by commas")
+    if laws is not None and scenes is None:
+        scenes = []
+    if options.explore < 0:
+        raise UsageError(f"--explore {options.explore}: not a number of cases", "0 or more")
+    checks = {f"image/{rung.name}" for rung in ladder()} | check_names()
+    known_failures = known.load(Path(options.known) if options.known else None, checks)
     order = session.Order(
         subject=subject,
         scenes=scenes,
@@ -25,17 +32,42 @@ def run(options: Namespace) -> int:
         out=Path(options.out),
         seed=options.seed,
         block=not options.no_block,
-        known=known.load(Path(options.known) if options.known else None, checks),
+        known=known_failures,
         command=command_line(options),
         repeat=repeat_line(options),
+        laws=LawPlan(
+            _laws(laws, options.scenes),
+            named=laws is not None,
+            seed=options.seed,
+            explore=options.explore,
+            block=not options.no_block,
+            known=known_failures,
+            repeat=repeat_line(options, session.ONE_LAW),
+        ),
     )
     found, code = session.check(order)
     session.tell(found, order.out)
     return code
 
 
-def repeat_line(options: Namespace) -> str:
-    """The call that asks one scene again; {scene} is filled in later."""
+def _names(text: str | None, option: str, hint: str) -> list[str] | None:
+    """The names of a list with commas; None where the option is not given."""
+    if text is None:
+        return None
+    if not text:
+        raise UsageError(f"{option} is empty", hint)
+    return text.split(",")
+
+
+def _laws(names: list[str] | None, scenes: str | None) -> Sequence[AnyLaw]:
+    """The laws of these names; without names all, but none where only scenes are named."""
+    if names is not None:
+        return chosen(names)
+    return all_laws() if scenes is None else ()
+
+
+def repeat_line(options: Namespace, asked: str = session.ONE_SCENE) -> str:
+    """The call that asks one scene or one law again; its name is filled in later."""
     words = ["check"]
     if options.subject is not None:
         words.append(options.subject)
@@ -50,4 +82,6 @@ def repeat_line(options: Namespace) -> str:
         words += ["--seed", str(options.seed)]
     if options.known:
         words += ["--known", options.known]
-    return session.repeat_line(words, ["--", *options.tracer] if options.tracer is not None else [])
+    if options.explore and asked == session.ONE_LAW:
+        words += ["--explore", str(options.explore)]
+    return session.repeat_line(words, ["--", *options.tracer] if options.tracer is not None else [], asked)

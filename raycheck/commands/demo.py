@@ -10,6 +10,7 @@ from pathlib import Path
 from raycheck import session
 from raycheck.errors import BROKEN, CONFORMS, DIFFERS, StartError
 from raycheck.known import Known
+from raycheck.laws import LawPlan, all_laws
 from raycheck.subjects import attach
 
 EXAMPLES = (("cpp_lecture", CONFORMS), ("cpp_slides", DIFFERS))
@@ -32,6 +33,9 @@ def run(options: Namespace) -> int:
             known=Known({}),
             command=f"raycheck check {shlex.quote(str(folder))} --no-block",
             repeat=session.repeat_line(["check", str(folder)], []),
+            laws=LawPlan(
+                all_laws(), block=False, repeat=session.repeat_line(["check", str(folder)], [], session.ONE_LAW)
+            ),
         )
         found, code = session.check(order)
         session.tell(found, order.out)

@@ -13,7 +13,7 @@ from typing import Any
 from reference_tracer import numbers
 from reference_tracer.methods.pairs import fast_two_sum, two_product, two_sum
 from reference_tracer.methods.words import significant_bits
-from reference_tracer.numbers import Number, Unit3
+from reference_tracer.numbers import Number, Composed
 
 
 class DoubleWord:
@@ -58,7 +58,7 @@ def _as_double(x: Any) -> DoubleWord:
     return x if isinstance(x, DoubleWord) else DoubleWord(x, 0.0)
 
 
-class DoubleWordOperations(Unit3):
+class DoubleWordOperations(Composed):
     """Formulas on double words."""
 
     rank = 5

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from raycheck.cli import main
+from raycheck.laws import all_laws
 from reports import results
 from scenes.catalogue import ladder
 
@@ -26,7 +27,7 @@ def not_passed(found: results.Results) -> dict[str, str]:
 def test_the_lecture_example_passes_every_rung_of_the_ladder(compiled: Callable[..., Path], tmp_path: Path) -> None:
     found = checked(compiled("cpp_lecture"), tmp_path / "out")
     assert not_passed(found) == {}
-    assert len(found.verdicts) == len(ladder())
+    assert len(found.verdicts) == len(ladder()) + 1 + len(all_laws())  # the probe's greeting is one
 
 
 def test_the_lecture_example_in_double_passes_every_rung_at_float64(
@@ -61,7 +62,7 @@ def test_a_step_beyond_what_float32_needs_leaks_light_where_a_wall_meets_the_flo
 ) -> None:
     # L·sqrt(8u) is 2.1e-3 in shadow-wall: a step of 2e-3 is lawful there, one of 5e-3 skips the wall
     found = checked(compiled("cpp_lecture", "-DEPSILON=5e-3"), tmp_path / "out")
-    assert {v.check for v in found.verdicts if v.verdict == "fail"} == {"image/shadow-wall"}
+    assert {v.check for v in found.verdicts if v.verdict == "fail"} == {"image/shadow-wall", "law/sphere/nearest-root"}
 
 
 def test_the_lecture_example_in_float_fails_as_soon_as_it_claims_float64(
