@@ -86,7 +86,7 @@ def test_a_margin_is_the_smallest_of_all_decisions_on_the_path(name):
 
 
 def test_a_margin_does_not_depend_on_its_neighbours(monkeypatch):
-    scene = SCENES["lecture-final"]
+    scene = random_scene(7).resized(24, 18)
     whole = lanes.margins(scene)
     monkeypatch.setattr(lanes, "tile_size", lambda scene, backend: 7)
     assert (lanes.margins(scene) == whole).all()
