@@ -10,7 +10,7 @@ from scenes.model import Scene
 
 
 def random_scene(seed: int) -> Scene:
-    """Up to six objects and three lights in view of the lecture's camera, every feature at some odds; the same for the same seed."""
+    """Up to six objects and three lights in view of the lecture's camera; the same for the same seed."""
     chance = random.Random(seed)  # noqa: S311 - scenes, not secrets
 
     def triple(low: float, high: float) -> list[float]:

@@ -44,7 +44,7 @@ def test_sloppy_tracers_pass_deep_scenes_again_and_again(name):
 
 def some_dialect(seed):
     """Every convention drawn by chance."""
-    chance = random.Random(seed)
+    chance = random.Random(seed)  # noqa: S311 - scenes, not secrets
     return dialects.rules(Dialect(**{key: chance.choice(choices) for key, choices in CHOICES.items()}))
 
 
