@@ -9,6 +9,7 @@ decisions that were wrong (likewise), what happens when the widening is taken ou
 
 from __future__ import annotations
 
+import functools
 import random
 import sys
 import time
@@ -73,10 +74,10 @@ def _false(like: Any) -> Any:
     return like.mid < -1.0 if isinstance(like, Ball | Affine) else False
 
 
-def far_and_grazing(rng: np.random.Generator, n: int) -> tuple[Reals, ...]:
-    """Rays that pass a sphere at impact parameter s, 1 - s from 1 down to 1e-12 on both sides."""
-    D = 10.0 ** rng.uniform(0.2, 5.0, n)
-    s = 1.0 - 10.0 ** rng.uniform(-12.0, 0.0, n) * rng.choice([-1.0, 1.0], n)
+def far_and_grazing(rng: np.random.Generator, n: int, far: float = 5.0, graze: float = -12.0) -> tuple[Reals, ...]:
+    """Rays that pass a sphere 10^0.2 to 10^far radii away, at impact parameter s, |1 - s| from 1 down to 10^graze."""
+    D = 10.0 ** rng.uniform(0.2, far, n)
+    s = 1.0 - 10.0 ** rng.uniform(graze, 0.0, n) * rng.choice([-1.0, 1.0], n)
     r = 10.0 ** rng.uniform(-1.0, 1.0, n)
     u, side = _directions(rng, n), _directions(rng, n)
     side -= u * (u * side).sum(0)
@@ -223,7 +224,8 @@ def balls(total: int) -> None:
 
 def affine(total: int) -> None:
     """Affine forms against lanes that err."""
-    for name, (case, rays) in CASES.items():
+    near = {**CASES, "sphere": (sphere_case, functools.partial(far_and_grazing, far=2.0, graze=-5.0))}
+    for name, (case, rays) in near.items():
         rng = np.random.default_rng(2027)
         tally = Tally()
         while tally.rays < total // 2:
