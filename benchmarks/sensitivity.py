@@ -1,8 +1,9 @@
-"""The smallest change of a scene that the comparison sees, beside the smallest that a common gate sees.
+"""The smallest change of a scene that the comparison sees, beside the smallest that two common gates see.
 
-A float32 picture of the changed scene is judged by the truth of the unchanged one. The other gate is
-Blender's render test: 8-bit sRGB pictures, failed if more than 1 % of the pixels differ by more than 0.016
-in any channel (tests/python/modules/render_report.py of Blender).
+A float32 picture of the changed scene is judged by the truth of the unchanged one. The other gates are Blender's
+render test, on 8-bit sRGB pictures, failed if more than 1 % of the pixels differ by more than 0.016 in any
+channel (tests/python/modules/render_report.py of Blender), and a mean FLIP above 0.05 on sRGB pictures (Andersson
+et al., FLIP: A Difference Evaluator for Alternating Images, HPG 2020).
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import flip_evaluator
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,6 +60,7 @@ def turned(scene: Scene, d: float) -> Scene:
 
 CASES: dict[str, tuple[str, Change]] = {
     "index of glass 1.5 + d": ("glass-sphere", material("glass", "index", lambda x, d: x + d)),
+    "index of glass 1.5 + d, final": ("lecture-final", material("glass", "index", lambda x, d: x + d)),
     "index of water 1.33 + d": ("refract-plane", material("water", "index", lambda x, d: x + d)),
     "radius (1 + d)": ("headlight-sphere", radius),
     "reflect weight (1 + d)": ("mirror-imperfect", material("mirror", "reflect", lambda x, d: x * (1 + d))),
@@ -82,6 +85,16 @@ def seen_by_blender(pixels: Pixels, expected: Truth) -> bool:
     return bool(apart.mean() > 0.01)
 
 
+def seen_by_flip(pixels: Pixels, expected: Truth) -> bool:
+    """Judged by mean FLIP."""
+    one, other = ((srgb_codes(p) / 255.0).astype(np.float32) for p in (expected.pixels, pixels))
+    _, mean, _ = flip_evaluator.evaluate(one, other, "LDR", applyMagma=False)
+    return bool(mean > 0.05)
+
+
+GATES = (seen_by_us, seen_by_blender, seen_by_flip)
+
+
 def smallest(gate: Callable[[Pixels, Truth], bool], scene: Scene, change: Change, expected: Truth) -> float:
     """The smallest d of a grid of 8 a decade from 1e-8 to 1 that is seen, inf if none is."""
     for step in range(0, 8 * 8 + 1):
@@ -95,19 +108,18 @@ def main() -> None:
     """One line a change."""
     here = machine()
     print(f"{here.processor}, {here.cores} cores, Python {here.python}, {here.packages}")
-    print(f"{'change':<26}{'scene':<20}{'raycheck':>10}{'Blender':>10}")
+    print(f"{'change':<32}{'scene':<20}{'raycheck':>10}{'Blender':>10}{'FLIP':>10}")
     for words, (name, change) in CASES.items():
         scene = rung(name).scene()
         expected = truth(scene, "float32")
-        gates = (seen_by_us, seen_by_blender)
-        found = [smallest(gate, scene, change, expected) for gate in gates]
-        print(f"{words:<26}{name:<20}{found[0]:>10.1g}{found[1]:>10.1g}")
+        found = [smallest(gate, scene, change, expected) for gate in GATES]
+        print(f"{words:<32}{name:<20}" + "".join(f"{d:>10.1g}" for d in found), flush=True)
     for n in (101, 110, 150):
         scene = rung("phong-100").scene()
         changed = picture(material("shiny", "shininess", lambda x, d: int(d))(scene, n))
         expected = truth(scene, "float32")
-        words = [("seen" if gate(changed, expected) else "not seen") for gate in (seen_by_us, seen_by_blender)]
-        print(f"{f'exponent 100 -> {n}':<26}{'phong-100':<20}{words[0]:>10}{words[1]:>10}")
+        words = [("seen" if gate(changed, expected) else "not seen") for gate in GATES]
+        print(f"{f'exponent 100 -> {n}':<32}{'phong-100':<20}" + "".join(f"{word:>10}" for word in words))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference_tracer import numbers
-from reference_tracer.lanes.ball import DEFLATE, EDGE, INFINITY, INFLATE, NORMAL, ONE_OVER_PI, Ball, Doubtful, Precision
+from reference_tracer.lanes.ball import (
+    ANYWHERE,
+    DEFLATE,
+    EDGE,
+    INFINITY,
+    INFLATE,
+    ONE_OVER_PI,
+    Ball,
+    Doubtful,
+    Precision,
+    representable,
+    twice,
+)
 from reference_tracer.vector import Vec
 
 Reals = NDArray[np.float64]
@@ -64,7 +76,7 @@ class Affine:
     @property
     def linear(self) -> Any:
         """How far the symbols reach."""
-        return np.abs(self.dev).sum(axis=0) if len(self.dev) else 0.0
+        return reach(self.dev)
 
     @property
     def rad(self) -> Any:
@@ -113,7 +125,7 @@ class Affine:
         rest = np.abs(self.mid) * b.rest + np.abs(b.mid) * self.rest + (A + self.rest) * (B + b.rest)
         rest = rest + DEV * (np.abs(self.mid) * B + np.abs(b.mid) * A)
         found = self._rounded(mid, rest, dev, 1.0)
-        exact = self.nothing | b.nothing
+        exact = (self.nothing | b.nothing) & (mid == 0.0)
         return Affine(mid, np.where(exact, 0.0, found.rest + self.precision.tiny), self.precision, found.dev)
 
     def __truediv__(self, other: Any) -> Affine:
@@ -126,11 +138,10 @@ class Affine:
         dev = _sum(self.dev, -q * b.dev) / np.where(safe, b.mid, 1.0)
         own = (self.rest + np.abs(q) * b.rest + np.abs(self.mid) * 2.0**-51) / np.where(safe, size, 1.0)
         own = own + DEV * (self.linear + np.abs(q) * b.linear) / np.where(safe, size, 1.0)
-        reach = np.abs(dev).sum(axis=0) + own
-        rest = own + reach * (b.rad / np.where(safe, room, 1.0))
+        rest = own + (reach(dev) + own) * (b.rad / np.where(safe, room, 1.0))
         found = self._rounded(q, rest, dev, 1.0)
         rest = np.where(safe, np.where(self.nothing, 0.0, found.rest + self.precision.tiny), INFINITY)
-        return Affine(q, rest, self.precision, _where(safe, dev, NONE))
+        return Affine(q, rest, self.precision, _where(safe, found.dev, NONE))
 
     def __rsub__(self, other: Any) -> Affine:
         return self.other(other) - self
@@ -143,11 +154,21 @@ class Affine:
 
     def _rounded(self, mid: Any, rest: Any, dev: Reals, roundings: float) -> Affine:
         """With the tracer's rounding of the result, and ours of the dev; exact zeros stay exact."""
-        reach = np.abs(dev).sum(axis=0) if len(dev) else 0.0
-        rest = rest + reach * DEV + (np.abs(mid) + rest + reach) * (roundings * self.precision.u)
+        far = reach(dev)
+        rest = rest + far * DEV + (np.abs(mid) + rest + far) * (roundings * self.precision.u)
         rest = np.where(rest == 0.0, 0.0, (rest + self.precision.tiny) * INFLATE)
         known = np.isfinite(rest)
         return Affine(mid, np.where(known, rest, INFINITY), self.precision, _where(known, dev, NONE))
+
+
+def reach(dev: Reals) -> Any:
+    """At least Σ |dev_k|, whatever the roundings of the sum."""
+    return np.abs(dev).sum(axis=0) * (1.0 + len(dev) * 2.0**-52) if len(dev) else 0.0
+
+
+def _known(bound: Any) -> Any:
+    """The bound, infinite where it is not a number."""
+    return np.where(np.isnan(bound), INFINITY, bound)
 
 
 def _sum(a: Reals, b: Reals) -> Reals:
@@ -181,9 +202,8 @@ class AffineOperations:
 
     def _compared(self, a: Affine, b: Affine, value: Any) -> Doubtful:
         gap = np.abs(a.mid - b.mid)
-        dev = _sum(a.dev, -b.dev)
-        reach = (np.abs(dev).sum(axis=0) if len(dev) else 0.0) + (a.linear + b.linear) * DEV + a.rest + b.rest
-        return Doubtful(value, (gap > reach * INFLATE) | ((a.rad == 0.0) & (b.rad == 0.0)))
+        far = reach(_sum(a.dev, -b.dev)) + (a.linear + b.linear) * DEV + a.rest + b.rest
+        return Doubtful(value, (gap > far * INFLATE) | ((a.rad == 0.0) & (b.rad == 0.0)))
 
     def less(self, a: Any, b: Any) -> Doubtful:
         a, b = self._pair(a, b)
@@ -201,7 +221,7 @@ class AffineOperations:
         if not isinstance(condition, Doubtful):
             return Affine(mid, rest, a.precision, dev)
         other = np.where(value, b.mid, a.mid)
-        hull = np.maximum(np.where(value, a.rad, b.rad), np.abs(other - mid) + np.where(value, b.rad, a.rad))
+        hull = _known(np.maximum(np.where(value, a.rad, b.rad), np.abs(other - mid) + np.where(value, b.rad, a.rad)))
         sure = condition.sure
         return Affine(mid, np.where(sure, rest, hull * INFLATE), a.precision, _where(sure, dev, NONE))
 
@@ -210,18 +230,20 @@ class AffineOperations:
         s = numbers.sqrt0(x.mid)
         low, high = numbers.sqrt0(x.lower), numbers.sqrt0(x.upper)
         smooth = low > 0.0
-        twice = np.where(smooth, 2.0 * s, 1.0)
-        dev = x.dev / twice
-        bend = x.rad * x.rad / (twice * (s + low) * np.where(smooth, s + low, 1.0) * DEFLATE)
-        off = np.abs(x.mid) * 2.0**-51 / twice  # s² is not quite x.mid
-        rest = np.where(smooth, x.rest / twice + bend + off, np.maximum(s - low, high - s) * INFLATE)
+        slope = np.where(smooth, 2.0 * s, 1.0)
+        dev = x.dev / slope
+        total = np.where(smooth, s + low, 1.0)
+        bend = x.rad * x.rad / (slope * total * total * DEFLATE)
+        off = np.abs(x.mid) * 2.0**-50 / slope  # s² is not quite x.mid, which bends a little too
+        rest = np.where(smooth, x.rest / slope + bend + off, np.maximum(s - low, high - s) * INFLATE)
+        rest = np.where(x.upper < INFINITY, rest, INFINITY)  # the root of nothing known is not 0
         return x._rounded(s, rest, _where(smooth, dev, NONE), 1.0)
 
     def clamp0(self, x: Affine) -> Affine:
         positive = x.lower > 0.0
         return Affine(
             numbers.clamp0(x.mid),
-            np.where(positive, x.rest, np.where(x.upper <= 0.0, 0.0, x.rad)),
+            np.where(positive, x.rest, np.where(x.upper <= 0.0, 0.0, _known(x.upper - x.mid))),
             x.precision,
             _where(positive, x.dev, NONE),
         )
@@ -234,14 +256,14 @@ class AffineOperations:
         first = next(x for x in (a, b, c) if isinstance(x, Affine))
         a, b, c = (first.other(x) for x in (a, b, c))
         size = np.abs(a.mid) + np.abs(b.mid) + np.abs(c.mid) + (a.rad + b.rad + c.rad)
-        rest = a.rest + b.rest + c.rest + size * (2.0 * first.precision.u)
+        rest = a.rest + b.rest + c.rest + size * (twice(first.precision.u) + DEV)
         dev = _sum(_sum(a.dev, b.dev), c.dev)
         return first._rounded((a.mid + b.mid) + c.mid, rest, dev, 0.0)
 
     def over_pi(self, x: Affine) -> Affine:
         found: Ball = numbers.over_pi(Ball(x.mid, x.rest, x.precision))
-        more = x.linear * ONE_OVER_PI * (2.0 * x.precision.u + DEV)
-        return Affine(found.mid, (found.rad + more) * INFLATE, x.precision, x.dev * ONE_OVER_PI)
+        more = x.linear * ONE_OVER_PI * (twice(x.precision.u) + DEV)
+        return Affine(found.mid, _known((found.rad + more) * INFLATE), x.precision, x.dev * ONE_OVER_PI)
 
     def unit3(self, x: Any, y: Any, z: Any) -> tuple[Affine, Affine, Affine]:
         """a/|a| moves by (δ - n(n∘δ))/|a|, and by a second-order term.
@@ -253,21 +275,21 @@ class AffineOperations:
         a = [first.other(part) for part in (x, y, z)]
         n = numbers.unit3(*(part.mid for part in a))
         size = numbers.sqrt0(numbers.sum3(*(part.mid * part.mid for part in a)))
-        reach = a[0].rad + a[1].rad + a[2].rad
-        room = size * DEFLATE - reach * INFLATE
-        safe = room > NORMAL
+        R = a[0].rad + a[1].rad + a[2].rad
+        room = size * DEFLATE - R * INFLATE
+        safe = representable(room, size, first.precision)
         room = np.where(safe, room, 1.0)
-        length = np.where(safe, size * DEFLATE, 1.0)
-        e = reach / room
-        bend = reach * ((2.0 * e + e * e) / room + e / length)
+        length = np.where(safe, size, 1.0)
+        e = R / room
+        bend = R * ((2.0 * e + e * e) / room + e / length)
         along = _sum(_sum(n[0] * a[0].dev, n[1] * a[1].dev), n[2] * a[2].dev)
         result = []
         for k in range(3):
             dev = _sum(a[k].dev, -n[k] * along) / length
             flat = sum(np.abs((1.0 if j == k else 0.0) - n[k] * n[j]) * a[j].rest for j in range(3))
-            rest = flat / length + bend + reach / length * (4.0 * DEV)
+            rest = flat / length + bend + R / length * (4.0 * DEV)
             found = first._rounded(n[k], rest, dev, 5.0)
-            rest = np.where(a[k].nothing & safe, 0.0, np.where(safe, found.rest, 2.0))
+            rest = np.where(a[k].nothing & safe, 0.0, np.where(safe, found.rest, ANYWHERE))
             result.append(Affine(n[k], rest, first.precision, _where(safe & ~a[k].nothing, dev, NONE)))
         return result[0], result[1], result[2]
 

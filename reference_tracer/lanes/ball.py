@@ -7,8 +7,9 @@ as the plain lanes, so it is their result, bit for bit.
 
 The radius itself is computed in float64. INFLATE covers the rounding of that
 computation, TINY what underflows in it or is flushed to zero; a radius of 0 means
-that the value is exact, and only exact zeros and exact scene numbers have it. The
-proofs are in docs/tolerance.md.
+that the value is exact, and only exact zeros and exact scene numbers have it. One
+that is not a number says as little as an infinite one. The proofs are in
+docs/tolerance.md.
 
 An undecided comparison is a `Doubtful`: its value is the branch the midpoint
 takes, `sure` says where the other branch is impossible. `select` on it returns
@@ -167,8 +168,10 @@ DEFLATE = 1.0 - 2.0**-48
 EDGE = 2.0**-51
 """mid ± rad is rounded once: by less than 2^-51 of |mid| and 2^-48 of rad."""
 ONE_OVER_PI = 1.0 / math.pi
-NORMAL = 1e-140
-"""Vectors longer than this have a length whose square does not underflow."""
+NORMAL, HUGE = 1e-140, 1e150
+"""Vectors whose length lies between have a float64 square that neither underflows nor overflows."""
+ANYWHERE = 2.125
+"""No component of a unit vector, rounded as it may be, is farther from another's."""
 UNDERFLOW_64 = 1e-300
 """10^7 times the smallest normal number: what underflows or is flushed to zero in one operation."""
 UNDERFLOW_32 = 1e-36
@@ -181,6 +184,24 @@ def _abs(x: Any) -> Any:
 
 def _max(a: Any, b: Any) -> Any:
     return numbers.select(a > b, a, b)
+
+
+def _known(bound: Any) -> Any:
+    """The bound, infinite where it is not a number: inf - inf, or 0 times inf."""
+    return numbers.select(bound == bound, bound, INFINITY)
+
+
+def twice(u: Any) -> Any:
+    """What two roundings of one value make: (1 + u)² - 1."""
+    return (2.0 + u) * u
+
+
+def representable(room: Any, size: Any, precision: Precision) -> Any:
+    """Where a vector no shorter than `room` and about `size` long has a direction that its squares tell.
+
+    Ours must neither underflow nor overflow; the tracer's may lose 4·tiny, which must be below u of the squared length.
+    """
+    return (room > NORMAL) & (size < HUGE) & (room * room * precision.u >= 4.0 * precision.tiny)
 
 
 class BallOperations:
@@ -218,19 +239,20 @@ class BallOperations:
         mid = numbers.select(value, a.mid, b.mid)
         rad = numbers.select(value, a.rad, b.rad)
         other = numbers.select(value, b.mid, a.mid)
-        hull = _max(rad, _abs(other - mid) + numbers.select(value, b.rad, a.rad))
+        hull = _max(_known(rad), _known(_abs(other - mid) + numbers.select(value, b.rad, a.rad)))
         return Ball(mid, numbers.select(condition.sure, rad, hull * INFLATE), a.precision)
 
     def sqrt0(self, x: Ball) -> Ball:
         # The root of [lo, hi] clipped at 0; s - sqrt(lo) = (x - lo)/(s + sqrt(lo)) without cancellation.
         s = numbers.sqrt0(x.mid)
         low = numbers.sqrt0(x.lower)
-        high = numbers.sqrt0(x.upper)
+        upper = _known(x.upper)  # the root of nothing known is not 0
+        high = numbers.sqrt0(upper)
         total = s + low
         below = numbers.select(low > 0.0, x.rad / numbers.select(total > 0.0, total, 1.0), s)
         rise = s + high
         above = numbers.select(s > 0.0, x.rad / numbers.select(rise > 0.0, rise, 1.0), high)
-        return x._rounded(s, _max(below, above))
+        return x._rounded(s, numbers.select(upper < INFINITY, _max(below, above), INFINITY))
 
     def clamp0(self, x: Ball) -> Ball:
         return Ball(numbers.clamp0(x.mid), x.rad, x.precision)  # 1-Lipschitz
@@ -239,20 +261,22 @@ class BallOperations:
         # t -> t^n is increasing, so the bounds of the ball go through the same chain; each of its
         # at most 2 log2 n + 1 roundings is repeated by later squarings, in all at most 2n of them.
         mid = numbers.power(x.mid, n)
-        high = numbers.power(x.upper, n)
+        upper = _known(x.upper)
+        high = numbers.power(upper, n)
         low = numbers.power(numbers.clamp0(x.lower), n)
         times = n if isinstance(n, float | int) else _like(x.mid, n)
         # 2nu for the tracer's chain; 2n·2^-53 for each of the three computed here
         rad = _max(high - mid, mid - low) + high * ((2.0 * x.precision.u + 8.0 * 2.0**-53) * times)
-        return Ball(mid, numbers.select(x.upper > 0.0, (rad + x.precision.tiny) * INFLATE, 0.0), x.precision)
+        rad = numbers.select(upper < INFINITY, _known((rad + x.precision.tiny) * INFLATE), INFINITY)
+        return Ball(mid, numbers.select(upper > 0.0, rad, 0.0), x.precision)
 
     def sum3(self, a: Any, b: Any, c: Any) -> Any:
-        # Partial sums of any order stay below |a|+|b|+|c|: two roundings of that size.
+        # Partial sums of any order stay below |a|+|b|+|c|: two roundings of that size, one of the other.
         first = next(x for x in (a, b, c) if isinstance(x, Ball))
         a, b, c = (x if isinstance(x, Ball) else Ball(x, 0.0, first.precision) for x in (a, b, c))
         size = (_abs(a.mid) + _abs(b.mid)) + _abs(c.mid)
         rad = (a.rad + b.rad) + c.rad
-        rad = rad + (size + rad) * (2.0 * first.precision.u)
+        rad = rad + (size + rad) * twice(first.precision.u)
         rad = numbers.select(rad == 0.0, 0.0, (rad + first.precision.tiny) * INFLATE)
         return Ball((a.mid + b.mid) + c.mid, rad, first.precision)
 
@@ -260,7 +284,7 @@ class BallOperations:
         # A tracer divides by a rounded π or multiplies by a rounded 1/π: 2u; here 2^-53 more each
         mid = x.mid * ONE_OVER_PI
         rad = x.rad * ONE_OVER_PI
-        rad = rad + (_abs(mid) + rad) * (2.0 * x.precision.u + 2.0**-51)
+        rad = rad + (_abs(mid) + rad) * (twice(x.precision.u) + 2.0**-51)
         rad = (rad + x.precision.tiny) * INFLATE
         return Ball(mid, numbers.select(x._nothing, 0.0, rad), x.precision)
 
@@ -269,7 +293,7 @@ class BallOperations:
 
         Over the ball |a| >= |a_mid| - R with R the length of the radii, and n moves by at most
         e = R/(|a_mid| - R), so each entry of 1 - n n' by at most 2e + e². Rounding: the length is
-        right to 2.5u and the quotient adds u; 5u covers both.
+        right to 2.5u and the quotient adds u; 5u covers both, as long as no square underflows.
         """
         first = next(a for a in (x, y, z) if isinstance(a, Ball))
         a = [part if isinstance(part, Ball) else Ball(part, 0.0, first.precision) for part in (x, y, z)]
@@ -277,7 +301,7 @@ class BallOperations:
         size = numbers.sqrt0(numbers.sum3(*(part.mid * part.mid for part in a)))
         spread = (a[0].rad + a[1].rad) + a[2].rad
         room = size * DEFLATE - spread * INFLATE
-        safe = room > NORMAL
+        safe = representable(room, size, first.precision)
         room = numbers.select(safe, room, 1.0)
         e = spread / room
         result = []
@@ -286,7 +310,7 @@ class BallOperations:
             moved = ((slopes[0] + slopes[1]) + slopes[2] + (2.0 * e + e * e) * spread) / room
             rad = moved + (_abs(n[k]) + moved) * (5.0 * first.precision.u)
             rad = numbers.select(a[k]._nothing, 0.0, (rad + first.precision.tiny) * INFLATE)
-            result.append(Ball(n[k], numbers.select(safe, rad, 2.0), first.precision))
+            result.append(Ball(n[k], numbers.select(safe, rad, ANYWHERE), first.precision))
         return result[0], result[1], result[2]
 
 

@@ -1,22 +1,22 @@
 """The wavefront's decisions on balls: what cannot be decided is bounded and named.
 
 `Balls` answers the same questions as `Floats`. Where the nearest object or total reflection is
-undecided, the colour of that ray is only known to lie between 0 and the brightest colour that any
+undecided, the colour of that ray is only known to lie between the darkest and the brightest colour that any
 ray of its generation can have; the weights on the way to the eye shrink that bound.
 """
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from reference_tracer.lanes.backend import Backend
 from reference_tracer.lanes.ball import INFINITY, UNDERFLOW_32, UNDERFLOW_64, Ball, Doubtful, Precision
 from reference_tracer.lanes.floats import Nearest
+from reference_tracer.lanes.span import colours
 from reference_tracer.numbers import select
 from reference_tracer.rulebook import Rulebook
 from reference_tracer.vector import Vec
-from scenes.model import Light, Material, PointLight, Scene, Sphere
+from scenes.model import Scene
 
 HIT = 1
 SMALL = 1e-100
@@ -26,7 +26,7 @@ SMALL = 1e-100
 class Balls:
     """Balls at unit roundoff u.
 
-    ball: the kind of ball; scene, rules: for the brightest colour of each generation; single: the tracer
+    ball: the kind of ball; scene, rules: for the span of each generation's colours; single: the tracer
     reads a scene's numbers into float32; offset: how far from its start a ray may lawfully fail to see a surface.
     """
 
@@ -45,8 +45,8 @@ class Balls:
         self.precision = Precision(lanes.scalar(u), lanes.scalar(tiny))
         self.inputs = lanes.to_single if single else _as_given
         self.offset = lanes.scalar(offset)
-        self.brightest = [
-            [lanes.scalar(top) for top in tops] for tops in brightest(scene, rules.generations(scene.depth))
+        self.spans = [
+            [(lanes.scalar(low), lanes.scalar(top)) for low, top in channels] for channels in colours(scene, rules, u)
         ]
 
     def read(self, array: Any) -> Any:
@@ -111,16 +111,17 @@ class Balls:
 
     def bounded(self, colour: Vec, doubts: Any, generation: int) -> Vec:
         lost = (doubts & HIT) > 0
-        return Vec(*(self._clip(c, lost, top) for c, top in zip(colour, self.brightest[generation], strict=True)))
+        return Vec(*(self._clip(c, lost, *span) for c, span in zip(colour, self.spans[generation], strict=True)))
 
     def join(self, doubts: Any, *others: Any) -> Any:
         for other in others:
             doubts = doubts | other
         return doubts
 
-    def _clip(self, colour: Any, lost: Any, top: Any) -> Any:
-        """The ball cut to [0, top]; all of [0, top] where lost."""
-        room = select(colour.mid > top - colour.mid, colour.mid, top - colour.mid)
+    def _clip(self, colour: Any, lost: Any, low: Any, top: Any) -> Any:
+        """The ball cut to [low, top]; all of it where lost. It forgets its symbols: no two branches share new ones."""
+        above, below = top - colour.mid, colour.mid - low
+        room = select(below > above, below, above)
         known = ~lost & (colour.rad < room)
         return self.ball(colour.mid, select(known, colour.rad, room), self.precision)
 
@@ -133,47 +134,3 @@ def lower_end(ball: Any) -> Any:
     """At most every value of the ball; -inf where nothing is known of it."""
     lower = ball.lower
     return select(lower == lower, lower, -INFINITY)
-
-
-def brightest(scene: Scene, generations: int) -> list[tuple[float, float, float]]:
-    """An upper bound of the colour of any ray of generation 0, 1, ... `generations`, channel by channel.
-
-    Local light: ambient + Σ attenuation·colour·(diffuse + specular), each cosine at most 1, the ambient term
-    once or with each light's colour, whichever is more; then by the recursion of the shading sum, from the
-    last generation up, the background beyond it. So it holds in every dialect. The margin of 1e-6 covers the
-    rounding of this estimate and of the tracer's.
-    """
-    used = [scene.materials[name] for name in {thing.material for thing in scene.objects}]
-    near = [_strongest(light, scene) for light in scene.lights]
-
-    def local(m: Material, k: int) -> float:
-        lit = (m.diffuse[k] + m.specular[k]) or 0.0
-        ambient = m.ambient[k] * max(1.0, sum(light.color[k] for light in scene.lights))
-        return ambient + sum(a * light.color[k] * lit for a, light in zip(near, scene.lights, strict=True) if lit)
-
-    last: list[tuple[float, ...]] = []
-    for _ in range(generations, -1, -1):
-        tops = []
-        for k in range(3):
-            deeper = last[-1][k] if last else scene.background[k]
-            surfaces = [local(m, k) + ((m.reflect[k] + m.transmit[k]) * deeper if deeper else 0.0) for m in used]
-            tops.append(max([scene.background[k], *surfaces]) * (1.0 + 1e-6))
-        last.append(tuple(tops))
-    return last[::-1]  # type: ignore[return-value]
-
-
-def _strongest(light: Light, scene: Scene) -> float:
-    """The largest attenuation factor of a light on any surface."""
-    if not isinstance(light, PointLight) or light.attenuation == "none":
-        return 1.0
-    k = light.position
-    gaps = [
-        abs(math.dist(k, t.center) - t.radius)
-        if isinstance(t, Sphere)
-        else abs(sum(a * b for a, b in zip(t.normal, k, strict=True)) - t.offset) / math.hypot(*t.normal)
-        for t in scene.objects
-    ]
-    gap = min(gaps, default=math.inf)
-    if gap == 0.0:
-        return math.inf
-    return 1.0 / (gap if light.attenuation == "inverse" else gap * gap)

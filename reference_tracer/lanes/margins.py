@@ -64,6 +64,14 @@ class Margins(Floats):
         gap = _inverse((second - best) / best)
         return Nearest(best, row), np.maximum(self.sharpest, np.where(np.isfinite(second), gap, 0.0))
 
+    def surely(self, condition: Any) -> Any:
+        """Nowhere: a shadow ray asks all objects, so that a margin does not depend on its neighbours."""
+        return np.zeros_like(condition)
+
+    def matters(self, colour: Vec) -> Any:
+        self.sharpest = 0.0  # a new shadow ray, asked of these lanes only
+        return super().matters(colour)
+
     def doubt(self, doubts: Any, kind: int, condition: Any, matters: Any) -> Any:
         if kind == SHADOW:
             seen = np.where(matters, np.maximum(self.facing, self.sharpest), self.facing)

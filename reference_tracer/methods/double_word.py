@@ -13,7 +13,7 @@ from typing import Any
 from reference_tracer import numbers
 from reference_tracer.methods.pairs import fast_two_sum, two_product, two_sum
 from reference_tracer.methods.words import significant_bits
-from reference_tracer.numbers import Number, Composed
+from reference_tracer.numbers import Composed, Number
 
 
 class DoubleWord:

@@ -26,8 +26,10 @@ def ball(mid, rad):
 
 def inside(value, result, slack=Fraction(1, 10**9)):
     """Is the exact value in the ball, whose own radius was computed in float64?"""
-    mid, rad = Fraction(float(result.mid[0])), result.rad[0]
-    return rad == np.inf or abs(value - mid) <= Fraction(float(rad)) * (1 + slack) + Fraction(1, 10**300)
+    mid, rad = float(result.mid[0]), float(result.rad[0])
+    if rad == np.inf:  # the midpoint may have overflowed with it
+        return True
+    return abs(value - Fraction(mid)) <= Fraction(rad) * (1 + slack) + Fraction(1, 10**300)
 
 
 def somewhere(mid, rad, share):
