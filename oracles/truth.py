@@ -22,8 +22,9 @@ from scenes.model import Plane, Scene, Sphere
 ROUNDOFF = {"float32": 2.0**-24, "float64": 2.0**-53}
 """Unit roundoff u of the precisions a tracer may declare (IEEE 754-2019, round to nearest)."""
 
-SAFETY = 2.0
-"""Balls are computed at SAFETY·u: room for x·(1/y) instead of x/y and for library functions good to 1 ulp."""
+SAFETY = {"float32": 2.0, "float64": 3.0}
+"""Balls are computed at SAFETY·u: room for x·(1/y) instead of x/y and for library functions good to 1 ulp, and in
+float64 for the rounding of our own midpoint."""
 
 DOUBTS = {HIT: "silhouette or depth order", SHADOW: "shadow edge", CRITICAL: "critical angle"}
 """Kinds of decisions, as the report names them."""
@@ -53,7 +54,7 @@ class Truth:
 
 def truth(scene: Scene, precision: str, backend: str = "numpy", rules: Rulebook = LECTURE) -> Truth:
     """Truth and tolerance of a scene for a tracer of that precision ("float32" or "float64")."""
-    u = SAFETY * ROUNDOFF[precision]
+    u = SAFETY[precision] * ROUNDOFF[precision]
     offset = lawful_offset(scene)
     found = lanes.enclose(scene, lanes.backend(backend, 64), u, offset, rules)
     if u > lanes.SINGLE:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from reference_tracer.formulas.plane import NEVER
 from reference_tracer.lanes.backend import Backend
 from reference_tracer.lanes.ball import INFINITY, UNDERFLOW_32, UNDERFLOW_64, Ball, Doubtful, Precision
 from reference_tracer.lanes.floats import Nearest
@@ -45,6 +46,8 @@ class Balls:
         self.precision = Precision(lanes.scalar(u), lanes.scalar(tiny))
         self.inputs = lanes.to_single if single else _as_given
         self.offset = lanes.scalar(offset)
+        # Who needs no offset knows where its rays start
+        self.beyond = lanes.scalar(offset if offset > 0.0 else NEVER)
         self.spans = [
             [(lanes.scalar(low), lanes.scalar(top)) for low, top in channels] for channels in colours(scene, rules, u)
         ]
@@ -65,6 +68,9 @@ class Balls:
     def fresh(self, o: Vec, v: Vec) -> tuple[Vec, Vec]:
         begun: tuple[Vec, Vec] = self.ball.begin(o, v)
         return begun
+
+    def again(self) -> Any:
+        return self.ball(self.beyond, 0.0, self.precision)
 
     def surely(self, condition: Doubtful) -> Any:
         return condition.value & condition.sure

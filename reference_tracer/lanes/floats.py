@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol
 
+from reference_tracer.formulas.plane import NEVER
 from reference_tracer.numbers import select
 from reference_tracer.rulebook import Rulebook
 from reference_tracer.vector import Vec
@@ -31,6 +32,9 @@ class Numbers(Protocol):
 
     def start(self) -> Any:
         """How far from its start a ray may first meet something."""
+
+    def again(self) -> Any:
+        """How far from its start a ray that does not know where it starts may meet its own plane."""
 
     def fresh(self, o: Vec, v: Vec) -> tuple[Vec, Vec]:
         """Origin and direction of a generation's rays, as it begins."""
@@ -74,6 +78,9 @@ class Floats:
 
     def start(self) -> Any:
         return 0.0
+
+    def again(self) -> Any:
+        return NEVER
 
     def fresh(self, o: Vec, v: Vec) -> tuple[Vec, Vec]:
         return o, v

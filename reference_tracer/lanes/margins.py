@@ -94,10 +94,10 @@ class Margins(Floats):
 
         return self.watched.sphere_hit(watched, o, v, c, r, starts_here, start)
 
-    def _plane_hit(self, o: Vec, v: Vec, normal: Vec, offset: Any, starts_elsewhere: Any, start: Any) -> Any:
+    def _plane_hit(self, o: Vec, v: Vec, normal: Vec, offset: Any, starts_elsewhere: Any, *ends: Any) -> Any:
         asked = _inverse(np.abs(dot(normal, v)) / length(normal))
         self.sharpest = np.maximum(self.sharpest, np.where(starts_elsewhere, asked, 0.0))
-        return self.watched.plane_hit(o, v, normal, offset, starts_elsewhere, start)
+        return self.watched.plane_hit(o, v, normal, offset, starts_elsewhere, *ends)
 
     def _refract(self, v: Vec, n: Vec, leaving: Any, index: Any) -> tuple[Vec, Any]:
         along = dot(v, n)

@@ -106,7 +106,7 @@ def narrow(scene: Scene, found: Enclosure, u: float, offset: float, rules: Ruleb
             pixels = wanted[begin : begin + tile]
             colour, again = front.colours(pixels)
             doubts[pixels] &= again
-            radius[pixels] = np.minimum(radius[pixels], np.stack([part.rad for part in colour], axis=-1))
+            radius[pixels] = np.fmin(radius[pixels], np.stack([part.rad for part in colour], axis=-1))
     return Enclosure(found.pixels, radius.reshape(found.radius.shape), doubts.reshape(found.doubts.shape))
 
 

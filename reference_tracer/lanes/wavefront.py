@@ -15,7 +15,7 @@ from reference_tracer.lanes.backend import Array, Backend, each
 from reference_tracer.lanes.floats import Nearest, Numbers
 from reference_tracer.lanes.tables import Tables
 from reference_tracer.numbers import less, select
-from reference_tracer.rulebook import Rulebook
+from reference_tracer.rulebook import Rulebook, last
 from reference_tracer.vector import Vec, select_vec
 from scenes.model import Scene
 
@@ -103,7 +103,7 @@ class Wavefront:
         if generation == self.rules.generations(self.scene.depth):
             ended = self.rules.last(local, reflect, transmit, self.background())
             found = self.rules.seen(select_vec(hit, ended, local))
-            return self.numbers.bounded(found, doubts, generation), doubts
+            return self.numbers.bounded(found, doubts, generation), doubts if self.rules.last is last else cut
 
         # Trace the rays whose weight is not 0, and bring their colours back to where they came from
         up, down = self.backend.compress(reflects), self.backend.compress(transmits)
@@ -190,7 +190,8 @@ class Wavefront:
 
     def _meet_plane(self, row: Any, o: Vec, v: Vec, start: Array) -> tuple[Any, Any]:
         normal, offset = self._geometry(row)
-        return self.rules.plane_hit(o, v, normal, offset, start != row, self.numbers.start())
+        begin, again = self.numbers.start(), self.numbers.again()
+        return self.rules.plane_hit(o, v, normal, offset, start != row, begin, again)
 
     def _normal(self, p: Vec, row: Array) -> Vec:
         geometry, _ = self._geometry(row)
