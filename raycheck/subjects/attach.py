@@ -12,6 +12,7 @@ from raycheck.manifest import Manifest
 from raycheck.subjects.command import CommandSubject
 from raycheck.subjects.images import ImagesSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
+from raycheck.subjects.mitsuba import MitsubaSubject
 from raycheck.subjects.subject import Subject
 
 FORMS = "a folder with raycheck.toml, builtin:reference, images:DIR, python:module:attr, or -- COMMAND"
@@ -23,8 +24,10 @@ def attach(spec: str, precision: str = "float32") -> Subject:
     match kind:
         case "builtin" if rest.split("/")[0] == "reference":
             return ReferenceSubject(rest)
+        case "builtin" if rest.split("/")[0] == "mitsuba":
+            return MitsubaSubject(rest)
         case "builtin":
-            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference")
+            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, builtin:mitsuba")
         case "images":
             return ImagesSubject(Path(rest), precision)
         case "python" if rest.count(":") == 1:

@@ -1,0 +1,55 @@
+"""The process Mitsuba runs in: a line per picture in, a line per picture out.
+
+`python -m oracles.peers.mitsuba_worker VARIANT` reads lines `TASK<tab>SCENE<tab>FILE` from stdin and answers each with
+`done SECONDS` or `error MESSAGE` on what was stdout; whatever else is printed goes to stderr. It ends with stdin.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from oracles.peers.mitsuba_start import start
+from scenes.files import load
+
+Task = Callable[[Any, Any], "NDArray[np.float32]"]
+TASKS = {"image": "mitsuba_whitted"}
+"""Module of oracles.peers whose `render(mi, scene)` does each task."""
+
+
+def main() -> None:
+    """Answer until stdin ends."""
+    replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    mi = start(sys.argv[1])
+    for line in sys.stdin:
+        reply(replies, *_answer(mi, *line.rstrip("\n").split("\t")))
+
+
+def reply(replies: TextIO, word: str, rest: str) -> None:
+    """One line, sent at once."""
+    print(word, " ".join(rest.split()), file=replies, flush=True)
+
+
+def _answer(mi: Any, task: str, scene: str, file: str) -> tuple[str, str]:
+    try:
+        render: Task = importlib.import_module(f"oracles.peers.{TASKS[task]}").render
+        begin = time.monotonic()
+        values = render(mi, load(Path(scene)))
+        seconds = time.monotonic() - begin
+        np.save(file, values)
+    except Exception as error:  # whatever the peer raises is its answer
+        return "error", f"{type(error).__name__}: {error}"[:2000]
+    return "done", repr(seconds)
+
+
+if __name__ == "__main__":
+    main()
