@@ -9,6 +9,7 @@ scaled along the normal is the plane's own formula at any radius. With RADIUS 1e
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,8 +64,7 @@ def _order(mi: Any, loaded: Any) -> Any:
     """Our object's place from Mitsuba's pointer: by id in scalar variants, by registry number in the others."""
     if mi.variant().startswith("scalar"):
         return lambda shape, active: int(shape.id().removeprefix("object-"))
-    import drjit as dr
-
+    dr: Any = importlib.import_module("drjit")
     numbers = [int(dr.reinterpret_array(mi.UInt32, mi.ShapePtr(shape))[0]) for shape in loaded.shapes()]
     table = np.zeros(max(numbers, default=0) + 1, dtype=np.uint32)
     for number, shape in zip(numbers, loaded.shapes(), strict=True):
@@ -77,6 +77,7 @@ class Tables:
     """Materials by object: a colour or number of each, looked up for one ray or for many."""
 
     def __init__(self, mi: Any, scene: Scene) -> None:
+        self.dr: Any = importlib.import_module("drjit")
         self.mi, self.scalar = mi, mi.variant().startswith("scalar")
         self.materials = [scene.materials[thing.material] for thing in scene.objects]
         names = ("ambient", "diffuse", "specular", "reflect", "transmit")
@@ -86,7 +87,7 @@ class Tables:
         self.exponents = sorted({material.shininess for material in self.materials if any(material.specular)})
 
     def any(self, name: str) -> bool:
-        """Does any material have that colour?"""
+        """Whether any material has that colour."""
         return any(any(getattr(material, name)) for material in self.materials)
 
     def _colours(self, name: str) -> Any:
@@ -102,14 +103,10 @@ class Tables:
         """The colour of that name, of the object at `order`."""
         if self.scalar:
             return self.colours[name][order]
-        import drjit as dr
-
-        return dr.gather(self.mi.Color3f, self.colours[name], order, active)
+        return self.dr.gather(self.mi.Color3f, self.colours[name], order, active)
 
     def number(self, values: Any, order: Any, active: Any) -> Any:
         """An entry of `index` or `shininess`."""
         if self.scalar:
             return values[order]
-        import drjit as dr
-
-        return dr.gather(self.mi.Float, values, order, active)
+        return self.dr.gather(self.mi.Float, values, order, active)

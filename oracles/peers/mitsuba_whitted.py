@@ -21,10 +21,9 @@ class Whitted:
     """Traces one scene in the chosen variant of Mitsuba."""
 
     def __init__(self, mi: Any, scene: Scene) -> None:
-        import drjit as dr
-
-        self.mi, self.dr, self.scene = mi, dr, scene
+        self.mi, self.scene = mi, scene
         self.tables = Tables(mi, scene)
+        self.dr = self.tables.dr
         self.loaded = load(mi, scene)
         self.background = mi.Color3f(*scene.background)
 
@@ -59,12 +58,15 @@ class Whitted:
             share = self.mi.Color3f(*light.color) * factor * (diffuse * cosine + specular * gloss)
             lit = hit & self.dr.any(share != 0.0)
             if self.scene.shadows:
-                lit &= ~self.loaded.scene.ray_test(ray, lit) if not self.tables.scalar else self._in_view(ray, lit)
+                lit = self.in_view(ray, lit)
             colour += self.dr.select(lit, share, 0.0)
         return colour
 
-    def _in_view(self, ray: Any, lit: bool) -> bool:
-        return lit and not self.loaded.scene.ray_test(ray)
+    def in_view(self, ray: Any, lit: Any) -> Any:
+        """Where nothing stands on the shadow ray."""
+        if self.tables.scalar:
+            return lit and not self.loaded.scene.ray_test(ray)
+        return lit & ~self.loaded.scene.ray_test(ray, lit)
 
     def toward(self, light: Light, si: Any) -> tuple[Any, Any, Any]:
         """Shadow ray, unit direction to the light in the local frame, attenuation."""
@@ -97,13 +99,13 @@ class Whitted:
         colour = mi.Color3f(0.0)
         F, cos_t, _, ratio = mi.fresnel(si.wi.z, self.tables.number(self.tables.index, order, hit))
         for name, local, share, exists in (
-            ("reflect", lambda: mi.reflect(si.wi), F, True),
-            ("transmit", lambda: mi.refract(si.wi, cos_t, ratio), 1.0 - F, cos_t != 0.0),
+            ("reflect", mi.reflect(si.wi), F, True),
+            ("transmit", mi.refract(si.wi, cos_t, ratio), 1.0 - F, cos_t != 0.0),
         ):
             weight = self.tables.colour(name, order, hit)
             follow = hit & dr.any(weight != 0.0) & exists
             if self.tables.any(name) and dr.any(follow):
-                seen = self.find_rgb(si.spawn_ray(si.to_world(local())), generation + 1, follow)
+                seen = self.find_rgb(si.spawn_ray(si.to_world(local)), generation + 1, follow)
                 weight = weight * share if self.scene.fresnel else weight
                 colour += dr.select(follow, weight * seen, 0.0)
         return colour

@@ -25,7 +25,7 @@ def run(options: Namespace) -> int:
         out=Path(options.out),
         seed=options.seed,
         block=not options.no_block,
-        known=known.load(Path(options.known) if options.known else None, checks),
+        known=known.load(Path(options.known), checks) if options.known else known.shipped(subject.spec, checks),
         command=command_line(options),
         repeat=repeat_line(options),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import selectors
 import subprocess
@@ -9,10 +10,10 @@ import sys
 import tempfile
 import time
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO
+from typing import IO, cast
 
 import oracles
 from raycheck import process
@@ -41,6 +42,8 @@ class Child:
     environment: Mapping[str, str] = field(default_factory=dict)
     _running: subprocess.Popen[bytes] | None = None
     _printed: IO[bytes] | None = None
+    _end: Callable[[], object] | None = None
+    """Ends the process once, here or when raycheck itself ends: afterwards its number may be another's."""
 
     @property
     def command(self) -> tuple[str, ...]:
@@ -66,7 +69,7 @@ class Child:
     def _start(self) -> subprocess.Popen[bytes]:
         root = str(Path(oracles.__file__).resolve().parents[1])
         words = [sys.executable, "-P", "-m", self.module, *self.arguments]
-        printed = tempfile.TemporaryFile()  # noqa: SIM115: it lives as long as the process
+        printed = tempfile.TemporaryFile()  # noqa: SIM115 (it lives as long as the process)
         try:
             with process.interrupts_held():
                 running = subprocess.Popen(
@@ -80,20 +83,19 @@ class Child:
                 self._running, self._printed = running, printed
         except OSError as error:
             raise StartError(f"{self.module} cannot be started: {error.strerror}") from None
-        weakref.finalize(self, process.end, running)
+        self._end = weakref.finalize(self, process.end, running)
         process.limit(running.pid, FILE_LIMIT)
         return running
 
     def _exchange(self, running: subprocess.Popen[bytes], request: str, deadline: float) -> str | None:
         """The answer's line; a line without its end if the process ended; None if time ran out."""
-        assert running.stdin is not None
-        assert running.stdout is not None
+        stdin, stdout = cast(IO[bytes], running.stdin), cast(IO[bytes], running.stdout)
         try:
-            running.stdin.write(request.encode() + b"\n")
-            running.stdin.flush()
+            stdin.write(request.encode() + b"\n")
+            stdin.flush()
         except BrokenPipeError:
             return ""
-        descriptor, got = running.stdout.fileno(), b""
+        descriptor, got = stdout.fileno(), b""
         with selectors.DefaultSelector() as selector:
             selector.register(descriptor, selectors.EVENT_READ)
             while not got.endswith(b"\n") and len(got) < REPLY_LIMIT:
@@ -124,10 +126,11 @@ class Child:
 
     def stop(self) -> None:
         """End the process, if it runs."""
-        if self._running is not None:
-            process.end(self._running)
-            if self._running.stdin is not None:
+        if self._end is not None:
+            self._end()
+        if self._running is not None and self._running.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):
                 self._running.stdin.close()
         if self._printed is not None:
             self._printed.close()
-        self._running = self._printed = None
+        self._running = self._printed = self._end = None
