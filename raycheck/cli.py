@@ -17,8 +17,8 @@ from raycheck.errors import BROKEN, CONFORMS, INTERRUPTED, MISUSE, RaycheckError
 EXIT_CODES = """exit codes: 0 conforms, 1 does not conform, 2 the call, scene or manifest is wrong,
 3 the tracer could not be started, 4 the suite itself failed, 130 interrupted"""
 
-SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]], images:DIR
-(one image a scene), python:module:attr (trusted code), or nothing and the tracer's command after --:
+SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]],
+builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock]], builtin:povray, images:DIR (one image a scene), python:module:attr (trusted code), or nothing and the tracer's command after --:
   raycheck check -- ./tracer {scene} {image}"""
 
 
@@ -87,7 +87,13 @@ def parser() -> Parser:
 
     scenes = _add(commands, "scenes", "list the catalogue, or print one scene")
     scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
-    scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")
+    scenes.add_argument(
+        "--as",
+        dest="form",
+        choices=("json", "text", "mitsuba", "povray"),
+        default="json",
+        help="notation (%(default)s)",
+    )
 
     report = _add(commands, "report", "write a report again from its results")
     report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")

@@ -1,10 +1,6 @@
 """A scene as Mitsuba's shapes, with the lecture's materials in tables beside them.
 
-Runs inside the peer's process, after a variant was chosen. Mitsuba has no infinite plane. A `rectangle` gets its
-hit from barycentric coordinates of its corners, so its error grows with its size (1e-5 at 100). A `disk` is met in
-its own frame, t = -z_o/z_d, and its size enters nothing but the test x² + y² <= 1: a disk whose frame is not
-scaled along the normal is the plane's own formula at any radius. With RADIUS 1e7 what it misses lies within
-1e-7 of the horizon's angle for each unit that the eye is above it.
+Runs inside the peer's process, after a variant was chosen. A plane is a disk: see `frames`.
 """
 
 from __future__ import annotations
@@ -14,12 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from scenes.model import Object, Plane, Scene, Sphere
-
-RADIUS = 1e7
-"""Radius of the disk that stands for a plane, in the scene's unit."""
+from oracles.peers.frames import plane_frame
+from scenes.model import Object, Scene, Sphere
 
 
 @dataclass(frozen=True)
@@ -42,22 +35,7 @@ def load(mi: Any, scene: Scene) -> Loaded:
 def _shape(mi: Any, thing: Object) -> dict[str, Any]:
     if isinstance(thing, Sphere):
         return {"type": "sphere", "center": list(thing.center), "radius": thing.radius}
-    return {"type": "disk", "to_world": mi.ScalarTransform4f(frame(thing))}
-
-
-def frame(plane: Plane) -> NDArray[np.float64]:
-    """Matrix (4, 4) that takes the unit disk to the plane, its normal to the plane's, unscaled along it."""
-    normal = np.asarray(plane.normal)
-    squared = float(normal @ normal)
-    n = normal / np.sqrt(squared)
-    # The axis farthest from n gives two tangents without cancellation; axis-aligned planes stay exact
-    axis = np.eye(3)[int(np.argmin(np.abs(n)))]
-    s = np.cross(axis, n)
-    s /= np.sqrt(float(s @ s))
-    matrix = np.eye(4)
-    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2] = RADIUS * s, RADIUS * np.cross(n, s), n
-    matrix[:3, 3] = normal * (plane.offset / squared)
-    return matrix
+    return {"type": "disk", "to_world": mi.ScalarTransform4f(plane_frame(thing))}
 
 
 def _order(mi: Any, loaded: Any) -> Any:

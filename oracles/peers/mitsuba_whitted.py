@@ -111,8 +111,8 @@ class Whitted:
         return colour
 
 
-def render(mi: Any, scene: Scene) -> NDArray[np.float32]:
-    """The whole picture (height, width, 3), linear."""
+def render(mi: Any, scene: Scene, seed: int, samples: int) -> NDArray[np.float32]:
+    """The whole picture (height, width, 3), linear; nothing in it is random."""
     tracer = Whitted(mi, scene)
     width, height = scene.image.width, scene.image.height
     if tracer.tables.scalar:

@@ -1,7 +1,8 @@
 """The process Mitsuba runs in: a line per picture in, a line per picture out.
 
-`python -m oracles.peers.mitsuba_worker VARIANT` reads lines `TASK<tab>SCENE<tab>FILE` from stdin and answers each with
-`done SECONDS` or `error MESSAGE` on what was stdout; whatever else is printed goes to stderr. It ends with stdin.
+`python -m oracles.peers.mitsuba_worker VARIANT` reads lines `TASK<tab>SCENE<tab>FILE<tab>SEED<tab>SAMPLES` from stdin
+and answers each with `done SECONDS`, `unsupported REASON` or `error MESSAGE` on what was stdout; whatever else is
+printed goes to stderr. It ends with stdin.
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from oracles.peers.cannot import CannotSayError
 from oracles.peers.mitsuba_start import start
 from scenes.files import load
+from scenes.model import Scene
 
-Task = Callable[[Any, Any], "NDArray[np.float32]"]
-TASKS = {"image": "mitsuba_whitted"}
-"""Module of oracles.peers whose `render(mi, scene)` does each task."""
+Task = Callable[[Any, Scene, int, int], "NDArray[np.float32]"]
+TASKS = {"lecture": "mitsuba_whitted", "stock": "mitsuba_stock", "aov": "mitsuba_aov"}
+"""Module of oracles.peers whose `render(mi, scene, seed, samples)` does each task."""
 
 
 def main() -> None:
@@ -39,13 +42,16 @@ def reply(replies: TextIO, word: str, rest: str) -> None:
     print(word, " ".join(rest.split()), file=replies, flush=True)
 
 
-def _answer(mi: Any, task: str, scene: str, file: str) -> tuple[str, str]:
+def _answer(mi: Any, task: str, scene: str, file: str, seed: str, samples: str) -> tuple[str, str]:
     try:
         render: Task = importlib.import_module(f"oracles.peers.{TASKS[task]}").render
+        read = load(Path(scene))
         begin = time.monotonic()
-        values = render(mi, load(Path(scene)))
+        values = render(mi, read, int(seed), int(samples))
         seconds = time.monotonic() - begin
         np.save(file, values)
+    except CannotSayError as error:
+        return "unsupported", str(error)
     except Exception as error:  # whatever the peer raises is its answer
         return "error", f"{type(error).__name__}: {error}"[:2000]
     return "done", repr(seconds)

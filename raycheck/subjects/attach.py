@@ -13,6 +13,7 @@ from raycheck.subjects.command import CommandSubject
 from raycheck.subjects.images import ImagesSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
 from raycheck.subjects.mitsuba import MitsubaSubject
+from raycheck.subjects.povray import PovraySubject
 from raycheck.subjects.subject import Subject
 
 FORMS = "a folder with raycheck.toml, builtin:reference, images:DIR, python:module:attr, or -- COMMAND"
@@ -26,8 +27,10 @@ def attach(spec: str, precision: str = "float32") -> Subject:
             return ReferenceSubject(rest)
         case "builtin" if rest.split("/")[0] == "mitsuba":
             return MitsubaSubject(rest)
+        case "builtin" if rest.split("/")[0] == "povray":
+            return PovraySubject(rest)
         case "builtin":
-            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, builtin:mitsuba")
+            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, mitsuba or povray")
         case "images":
             return ImagesSubject(Path(rest), precision)
         case "python" if rest.count(":") == 1:
