@@ -2,7 +2,7 @@
 
 `python -m oracles.peers.mitsuba_worker VARIANT` reads lines `TASK<tab>SCENE<tab>FILE<tab>SEED<tab>SAMPLES` from stdin
 and answers each with `done SECONDS`, `unsupported REASON` or `error MESSAGE` on what was stdout; whatever else is
-printed goes to stderr. It ends with stdin.
+printed goes to stderr. It ends with stdin. The task `formula-NAME` reads rows (.npy) in place of a scene.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oracles.peers.cannot import CannotSayError
+from oracles.peers.mitsuba_formulas import evaluate
 from oracles.peers.mitsuba_start import start
 from scenes.files import load
 from scenes.model import Scene
@@ -44,6 +45,9 @@ def reply(replies: TextIO, word: str, rest: str) -> None:
 
 def _answer(mi: Any, task: str, scene: str, file: str, seed: str, samples: str) -> tuple[str, str]:
     try:
+        if task.startswith("formula-"):
+            np.save(file, evaluate(mi, task.removeprefix("formula-"), np.load(scene)))
+            return "done", "0.0"
         render: Task = importlib.import_module(f"oracles.peers.{TASKS[task]}").render
         read = load(Path(scene))
         begin = time.monotonic()

@@ -90,7 +90,7 @@ def _lines(scene: Scene) -> Iterator[str]:
 
 
 def _number(value: float) -> str:
-    return f"{value:.17g}"
+    return repr(float(value))
 
 
 def _rgb(name: str, colour: Iterable[float]) -> str:

@@ -64,7 +64,7 @@ def _lines(scene: Scene) -> Iterator[str]:
 
 
 def _number(value: float) -> str:
-    return f"{value:.17g}"
+    return repr(float(value))
 
 
 def _vector(values: Iterable[float]) -> str:

@@ -65,6 +65,18 @@ class MitsubaProcess:
             word, message = "invalid", "no picture of the right size was written"
         return Answer(values, word, message, self._evidence(reply, message), reply.seconds)
 
+    def evaluate(self, formula: str, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Rows of one formula through Mitsuba; raise StartError if it does not answer."""
+        with workspace() as folder:
+            given, file = folder / "given.npy", folder / "answers.npy"
+            np.save(given, rows)
+            reply = self.child.ask(f"formula-{formula}\t{given}\t{file}\t0\t1", TIMEOUT)
+            word, message = _judge(reply)
+            if word:
+                raise StartError(f"Mitsuba's {formula}: {message}")
+            answers: NDArray[np.float32] = np.load(file, allow_pickle=False)
+        return answers
+
     def _evidence(self, reply: Reply, message: str) -> Process:
         ended = reply.ended
         tail, status = (ended.tail, ended.status) if ended else (message, "still runs")
