@@ -101,3 +101,49 @@ class Verdict(Frozen):
     process: Process | None = None
     pictures: Pictures = Pictures()
     seconds: float = 0.0
+
+
+class Standing(Frozen):
+    """A party against certified truth.
+
+    p50, p99, worst: quantiles of the pixels' largest absolute error, truth's own bound added; outside: pixels beyond the bound of the party's
+    own precision and storage; explained: those of them that its habit accounts for; at: (i, j) of the worst.
+    """
+
+    party: str
+    precision: str
+    seconds: float
+    message: str = ""
+    p50: float = 0.0
+    p99: float = 0.0
+    worst: float = 0.0
+    at: tuple[int, int] = (0, 0)
+    outside: int = 0
+    explained: int = 0
+    reason: str = ""
+
+
+class Pair(Frozen):
+    """Two parties: where they differ most, by how much, and which of them lies outside its bound there."""
+
+    first: str
+    second: str
+    worst: float
+    at: tuple[int, int]
+    wrong: tuple[str, ...]
+
+
+class Case(Frozen):
+    """One scene: every party's standing, and every pair's worst difference."""
+
+    scene: str
+    certified: float
+    """Largest bound of the certified values, in pixels that could be decided."""
+    undecided: int
+    standings: tuple[Standing, ...]
+    pairs: tuple[Pair, ...]
+
+    @property
+    def unexplained(self) -> int:
+        """Pixels outside a bound that nothing accounts for."""
+        return sum(standing.outside - standing.explained for standing in self.standings)

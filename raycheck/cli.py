@@ -96,6 +96,11 @@ def parser() -> Parser:
         help="notation (%(default)s)",
     )
 
+    peers = _add(commands, "peers", "render with every peer at hand, and let certified truth say who is wrong")
+    peers.add_argument("--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes)")
+    peers.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")
+    peers.add_argument("--out", default="raycheck-peers", metavar="DIR", help="where the report goes (%(default)s)")
+
     report = _add(commands, "report", "write a report again from its results")
     report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")
 
