@@ -68,6 +68,26 @@ class Judged(Frozen):
     worst: Pixel | None = None
 
 
+class Sampled(Frozen):
+    """A stochastic tracer's renders against the reference's mean.
+
+    p_image, p_tile: least p-values; tiles_outside: tiles beyond their corrected rate; spots: pixels where no lawful
+    mean lies; histogram: the tiles' p-values in ten equal bins, level for a right tracer; smallest_bias: relative
+    bias of the whole image that would have been seen nine times in ten.
+    """
+
+    runs: int
+    spp: int
+    alpha: float
+    p_image: float
+    p_tile: float
+    tiles: int
+    tiles_outside: int
+    spots: int
+    histogram: tuple[int, ...]
+    smallest_bias: float
+
+
 class Process(Frozen):
     """What a tracer's process did."""
 
@@ -98,6 +118,7 @@ class Verdict(Frozen):
     blocked_by: str | None = None
     reproduce: str = ""
     judged: Judged | None = None
+    sampled: Sampled | None = None
     process: Process | None = None
     pictures: Pictures = Pictures()
     seconds: float = 0.0
@@ -106,8 +127,9 @@ class Verdict(Frozen):
 class Standing(Frozen):
     """A party against certified truth.
 
-    p50, p99, worst: quantiles of the pixels' largest absolute error, truth's own bound added; outside: pixels beyond the bound of the party's
-    own precision and storage; explained: those of them that its habit accounts for; at: (i, j) of the worst.
+    p50, p99, worst: quantiles of the pixels' largest absolute error, truth's own bound added; outside: pixels beyond
+    the bound of the party's own precision and storage; explained: those that its habit accounts for; at: (i, j) of
+    the worst.
     """
 
     party: str

@@ -25,7 +25,7 @@ from scenes.files import load
 from scenes.model import Scene
 
 Task = Callable[[Any, Scene, int, int], "NDArray[np.float32]"]
-TASKS = {"lecture": "mitsuba_whitted", "stock": "mitsuba_stock", "aov": "mitsuba_aov"}
+TASKS = {"lecture": "mitsuba_whitted", "stock": "mitsuba_stock", "path": "mitsuba_path", "aov": "mitsuba_aov"}
 """Module of oracles.peers whose `render(mi, scene, seed, samples)` does each task."""
 
 

@@ -19,6 +19,8 @@ from scenes.model import DirectionalLight, Light, Material, Object, Plane, Scene
 
 SQUARE = 2.0**-40
 """What rounding the camera's axes may make of a right angle or of equal sides, far below float32's 2^-24."""
+FAR = 1e9
+"""Far clip: Mitsuba's own 1e4 takes the floor away below a horizon's last 1e-4 radians for each unit of height."""
 NO_ROULETTE = 1000
 """`rr_depth`: Russian roulette would begin only after that many bounces."""
 PERFECT = '<string name="material" value="none"/>'
@@ -26,9 +28,12 @@ SAMPLES = 256
 """Samples a pixel where a path chooses between two branches by chance."""
 
 
-def to_mitsuba(scene: Scene) -> str:
-    """The XML file for Mitsuba 3; raise CannotSayError naming what a stock Mitsuba lacks."""
-    return "\n".join(_lines(scene)) + "\n"
+def to_mitsuba(scene: Scene, by_chance: bool | None = None) -> str:
+    """The XML file for Mitsuba 3; raise CannotSayError naming what a stock Mitsuba lacks.
+
+    by_chance: independent samples over each pixel's area, else its middle once; as the scene needs it unless said.
+    """
+    return "\n".join(_lines(scene, is_stochastic(scene) if by_chance is None else by_chance)) + "\n"
 
 
 def is_stochastic(scene: Scene) -> bool:
@@ -73,13 +78,13 @@ def max_depth(scene: Scene) -> int:
     return 2
 
 
-def _lines(scene: Scene) -> Iterator[str]:
+def _lines(scene: Scene, by_chance: bool) -> Iterator[str]:
     depth = max_depth(scene)
     yield f"<!-- {scene.name}; mitsuba -m scalar_rgb {scene.name}.xml -->"
     yield '<scene version="3.0.0">'
     yield f'  <integrator type="path"><integer name="max_depth" value="{depth}"/>'
     yield f'    <integer name="rr_depth" value="{NO_ROULETTE}"/></integrator>'
-    yield from _sensor(scene)
+    yield from _sensor(scene, by_chance)
     if any(scene.background):
         yield f'  <emitter type="constant">{_rgb("radiance", scene.background)}</emitter>'
     for light in scene.lights:
@@ -102,7 +107,7 @@ def _matrix(matrix: Iterable[Iterable[float]]) -> str:
     return f'<transform name="to_world"><matrix value="{words}"/></transform>'
 
 
-def _sensor(scene: Scene) -> Iterator[str]:
+def _sensor(scene: Scene, by_chance: bool) -> Iterator[str]:
     """A perspective sensor: x to the left, y up, z forward in its frame; ours may be left- or right-handed.
 
     A `forward` that leans against the image plane, and a sample beside the pixel's centre, move the principal point.
@@ -126,16 +131,17 @@ def _sensor(scene: Scene) -> Iterator[str]:
     y = (image.sample[1] - 0.5) / image.height - 0.5 * lean_y
     yield '  <sensor type="perspective">'
     yield f"    {_matrix(frame)}"
+    yield f'    <float name="far_clip" value="{_number(FAR)}"/>'
     yield f'    <string name="fov_axis" value="x"/><float name="fov" value="{_number(fov)}"/>'
     for name, offset in (("x", x), ("y", y)):
         if offset != 0.0:
             yield f'    <float name="principal_point_offset_{name}" value="{_number(offset)}"/>'
-    yield from _film(scene)
+    yield from _film(scene, by_chance)
     yield "  </sensor>"
 
 
-def _film(scene: Scene) -> Iterator[str]:
-    if is_stochastic(scene):
+def _film(scene: Scene, by_chance: bool) -> Iterator[str]:
+    if by_chance:
         yield f'    <sampler type="independent"><integer name="sample_count" value="{SAMPLES}"/></sampler>'
     else:
         yield '    <sampler type="stratified"><integer name="sample_count" value="1"/>'
