@@ -18,7 +18,7 @@ EXIT_CODES = """exit codes: 0 conforms, 1 does not conform, 2 the call, scene or
 3 the tracer could not be started, 4 the suite itself failed, 130 interrupted"""
 
 SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]],
-builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock]], builtin:povray, images:DIR (one image a scene),
+builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock|/path]], builtin:povray, images:DIR (one image a scene),
 python:module:attr (trusted code), or nothing and the tracer's command after --:
   raycheck check -- ./tracer {scene} {image}"""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +13,13 @@ import numpy as np
 from oracles.compare import Comparison, compare, difference
 from oracles.images import Picture
 from oracles.images.writing import png_bytes
+from oracles.statistics import Found
 from oracles.truth import Truth, truth
 from oracles.verdict import USABLE, Pictures, Verdict
 from raycheck.formulas import formula_of
 from raycheck.known import Known
 from raycheck.lanes import best_lanes
+from raycheck.sampling import sample
 from raycheck.subjects import Attempt, Subject
 from reference_tracer.formulas.display import encode
 from scenes.catalogue import Rung
@@ -117,6 +119,9 @@ def _settled(subject: Subject, plan: Plan, rung: Rung, words: dict[str, str]) ->
 
 def _asked(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path) -> Verdict:
     """Render, compare, keep the pictures."""
+    spp = getattr(subject, "spp", None)
+    if spp is not None:
+        return _sampled(subject, plan, rung, ahead, images, spp)
     attempt = subject.render(plan.scene(rung), plan.seed)
     expected = ahead.truth(rung)
     if attempt.picture is None:
@@ -132,11 +137,27 @@ def _asked(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path
     return verdict.model_copy(update=_evidence(attempt) | {"pictures": pictures})
 
 
+def _sampled(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path, spp: int) -> Verdict:
+    """As `_asked`, of a stochastic tracer: its mean against the pixels' averages over their areas."""
+    expected = ahead.truth(rung)
+    tried = sample(subject, plan.scene(rung), plan.seed, spp, expected, best_lanes())
+    if isinstance(tried, Attempt):
+        verdict = _start(rung, plan, tried.word or "invalid", tried.message)
+        pictures = _keep(images, rung.name, expected, None, None)
+        return verdict.model_copy(update=_evidence(tried) | {"pictures": pictures})
+    verdict = _start(rung, plan, tried.found.word, tried.found.message)
+    averaged = replace(expected, pixels=tried.reference, doubts=np.zeros_like(expected.doubts))
+    pictures = _keep(images, rung.name, averaged, tried.attempt.picture, tried.found)
+    return verdict.model_copy(update=_evidence(tried.attempt) | {"pictures": pictures, "sampled": tried.found.sampled})
+
+
 def _evidence(attempt: Attempt) -> dict[str, object]:
     return {"process": attempt.process, "seconds": attempt.seconds}
 
 
-def _keep(images: Path, name: str, expected: Truth, picture: Picture | None, comparison: Comparison | None) -> Pictures:
+def _keep(
+    images: Path, name: str, expected: Truth, picture: Picture | None, comparison: Comparison | Found | None
+) -> Pictures:
     """Write the PNGs that the report shows; return their names relative to the report."""
     display = expected.scene.display
     files = {"expected": encode(expected.pixels, display)}

@@ -1,4 +1,4 @@
-"""builtin:mitsuba[/VARIANT[/stock]]: Mitsuba 3 as a tracer under test."""
+"""builtin:mitsuba[/VARIANT[/stock|path]]: Mitsuba 3 as a tracer under test."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from raycheck.subjects.mitsuba_process import VARIANTS, MitsubaProcess
 from raycheck.subjects.subject import Attempt
 from scenes.model import Scene
 
+SPP = 64
+"""Samples a pixel of a render of the path tracer."""
+
 
 class MitsubaSubject:
-    """The lecture's model on Mitsuba's primitives, or with /stock the scenes that Mitsuba itself can say."""
+    """The lecture's model on Mitsuba's primitives; /stock: what a stock Mitsuba can say; /path: that, by chance."""
 
     in_process = False
     scene_form = ""
@@ -27,10 +30,11 @@ class MitsubaSubject:
         _, *options = rest.split("/")
         self.variant = options[0] if options else VARIANTS[0]
         self.spec = f"builtin:{rest}"
-        if self.variant not in VARIANTS or options[1:] not in ([], ["stock"]):
-            raise UsageError(f"{self.spec}: no such Mitsuba", f"builtin:mitsuba/{'|'.join(VARIANTS)}[/stock]")
-        self.task = "stock" if options[1:] else "lecture"
-        self.name = f"Mitsuba 3 ({self.variant}{', stock' if options[1:] else ''})"
+        if self.variant not in VARIANTS or options[1:] not in ([], ["stock"], ["path"]):
+            raise UsageError(f"{self.spec}: no such Mitsuba", f"builtin:mitsuba/{'|'.join(VARIANTS)}[/stock|/path]")
+        self.task = options[1] if options[1:] else "lecture"
+        self.spp = SPP if self.task == "path" else None
+        self.name = f"Mitsuba 3 ({', '.join([self.variant, *options[1:]])})"
         self.process = MitsubaProcess(self.variant)
 
     def prepare(self) -> None:
@@ -41,7 +45,7 @@ class MitsubaSubject:
         """Ask for the picture."""
         if self.task == "stock" and _by_chance(scene):
             return Attempt(None, "unsupported", "a stock Mitsuba follows one branch of glass by chance")
-        answer = self.process.ask(self.task, scene, seed)
+        answer = self.process.ask(self.task, scene, seed, SPP)
         if answer.values is None:
             return Attempt(None, answer.word, answer.message, answer.process, answer.seconds)
         try:
