@@ -88,6 +88,19 @@ class Sampled(Frozen):
     smallest_bias: float
 
 
+class Appearance(Frozen):
+    """Numbers that people compare pictures by; None where the package for it is not installed.
+
+    rmse: linear; psnr: dB of what is shown, white 1; flip, delta_e_2000, delta_e_itp: means over the picture.
+    """
+
+    rmse: float
+    psnr: float
+    flip: float | None = None
+    delta_e_2000: float | None = None
+    delta_e_itp: float | None = None
+
+
 class Process(Frozen):
     """What a tracer's process did."""
 
@@ -119,6 +132,7 @@ class Verdict(Frozen):
     reproduce: str = ""
     judged: Judged | None = None
     sampled: Sampled | None = None
+    appearance: Appearance | None = None
     process: Process | None = None
     pictures: Pictures = Pictures()
     seconds: float = 0.0

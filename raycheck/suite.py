@@ -13,9 +13,10 @@ import numpy as np
 from oracles.compare import Comparison, compare, difference
 from oracles.images import Picture
 from oracles.images.writing import png_bytes
+from oracles.metrics import appearance
 from oracles.statistics import Found
 from oracles.truth import Truth, truth
-from oracles.verdict import USABLE, Pictures, Verdict
+from oracles.verdict import USABLE, Appearance, Pictures, Verdict
 from raycheck.formulas import formula_of
 from raycheck.known import Known
 from raycheck.lanes import best_lanes
@@ -132,7 +133,8 @@ def _asked(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path
         linear = expected.scene.display == "srgb" and attempt.picture.maximum is None
         more = "; a linear image is not asked for its display encoding" if linear else ""
         verdict = _start(rung, plan, comparison.word, comparison.message + more)
-        verdict = verdict.model_copy(update={"judged": comparison.judged})
+        looks = _appearance(attempt.picture, expected) if comparison.word == "fail" else None
+        verdict = verdict.model_copy(update={"judged": comparison.judged, "appearance": looks})
         pictures = _keep(images, rung.name, expected, attempt.picture, comparison)
     return verdict.model_copy(update=_evidence(attempt) | {"pictures": pictures})
 
@@ -149,6 +151,16 @@ def _sampled(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Pa
     averaged = replace(expected, pixels=tried.reference, doubts=np.zeros_like(expected.doubts))
     pictures = _keep(images, rung.name, averaged, tried.attempt.picture, tried.found)
     return verdict.model_copy(update=_evidence(tried.attempt) | {"pictures": pictures, "sampled": tried.found.sampled})
+
+
+def _appearance(picture: Picture, expected: Truth) -> Appearance:
+    """How wrong a wrong picture looks; encoded ones are linear to nobody, so their shown values count twice."""
+    display = expected.scene.display
+    shown = encode(expected.pixels, display) / 255.0
+    if picture.maximum is not None:
+        got = picture.values / picture.maximum
+        return appearance(shown, got, shown, got)
+    return appearance(expected.pixels, picture.values, shown, encode(picture.values, display) / 255.0)
 
 
 def _evidence(attempt: Attempt) -> dict[str, object]:

@@ -17,4 +17,5 @@ def render(mi: Any, scene: Scene, seed: int, samples: int) -> NDArray[np.float32
     spp = samples if is_stochastic(scene) else 1
     loaded = [mi.load_string(to_mitsuba(part), optimize=False) for part in parts]
     pictures = np.array([np.array(mi.render(part, spp=spp, seed=seed)) for part in loaded], dtype=np.float32)
-    return pictures.sum(axis=0, dtype=np.float32)
+    added: NDArray[np.float32] = pictures.sum(axis=0, dtype=np.float32)
+    return added

@@ -83,7 +83,7 @@ class Child:
                 self._running, self._printed = running, printed
         except OSError as error:
             raise StartError(f"{self.module} cannot be started: {error.strerror}") from None
-        self._end = weakref.finalize(self, process.end, running)
+        self._end = weakref.finalize(self, _finish, running, printed)
         process.limit(running.pid, FILE_LIMIT)
         return running
 
@@ -128,9 +128,13 @@ class Child:
         """End the process, if it runs."""
         if self._end is not None:
             self._end()
-        if self._running is not None and self._running.stdin is not None:
-            with contextlib.suppress(BrokenPipeError):
-                self._running.stdin.close()
-        if self._printed is not None:
-            self._printed.close()
         self._running = self._printed = self._end = None
+
+
+def _finish(running: subprocess.Popen[bytes], printed: IO[bytes]) -> None:
+    """End the process and close what is open to it."""
+    process.end(running)
+    if running.stdin is not None:
+        with contextlib.suppress(BrokenPipeError):
+            running.stdin.close()
+    printed.close()
