@@ -23,6 +23,8 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/suite_overhead.py
 	$(BIN)/python -P benchmarks/sensitivity.py
 	$(BIN)/python -P benchmarks/containment.py
+	$(BIN)/python -P benchmarks/peers.py
+	$(BIN)/python -P benchmarks/stochastic_gate.py
 
 setup: $(READY)
 
@@ -46,4 +48,4 @@ schemas: $(READY)
 	  Path('reports/schema/results-1.json').write_text(results.schema())"
 
 clean:
-	rm -rf $(VENV) raycheck-demo raycheck-report examples/*/tracer
+	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-peers examples/*/tracer

@@ -65,7 +65,8 @@ class Shipped(Known):
 
 def shipped(spec: str, checks: set[str]) -> Known:
     """The list of the peer that `spec` attaches; an empty one for other tracers."""
-    path = PEERS / f"{spec.removeprefix('builtin:').split('/')[0]}.toml"
+    name, *options = spec.removeprefix("builtin:").split("/")
+    path = PEERS / f"{'-'.join([name, *options[1:]])}.toml"
     return Shipped(load(path, checks).entries) if spec.startswith("builtin:") and path.is_file() else Known({})
 
 
