@@ -33,7 +33,7 @@ def main(folder: str) -> int:
 def formulas(processes: list[MitsubaProcess]) -> None:
     """Worst share of the float32 budget, and worst error, of each column over each stratum."""
     names = [*(p.variant for p in processes), "ours float32", "ours float64"]
-    print(f"{'formula and stratum':<24}" + "".join(f"{name:>20}" for name in names))
+    print(f"{'formula and stratum':<24}" + "".join(f"{name:>24}" for name in names))
     for stratum in strata(0, CASES):
         truth = exactly(stratum)
         columns = [p.evaluate(stratum.formula, stratum.rows).astype(np.float64) for p in processes]
@@ -43,7 +43,7 @@ def formulas(processes: list[MitsubaProcess]) -> None:
             size = len(stratum.rows)
             columns.append(np.array([np.broadcast_to(np.asarray(x, dtype=np.float64), size) for x in found]).T)
         told = [errors(stratum, truth, column) for column in columns]
-        cells = "".join(f"{f'{e.share:.2g} of it, {e.worst:.1g}':>20}" for e in told)
+        cells = "".join(f"{f'{e.share:.2g} of it, {e.worst:.1g}':>24}" for e in told)
         print(f"{stratum.formula + ', ' + stratum.name:<24}{cells}")
 
 

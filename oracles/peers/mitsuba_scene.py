@@ -5,10 +5,10 @@ Runs inside the peer's process, after a variant was chosen. A plane is a disk: s
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import dataclass
 from typing import Any
 
+import drjit
 import numpy as np
 
 from oracles.peers.frames import plane_frame
@@ -42,7 +42,7 @@ def _order(mi: Any, loaded: Any) -> Any:
     """Our object's place from Mitsuba's pointer: by id in scalar variants, by registry number in the others."""
     if mi.variant().startswith("scalar"):
         return lambda shape, active: int(shape.id().removeprefix("object-"))
-    dr: Any = importlib.import_module("drjit")
+    dr: Any = drjit
     numbers = [int(dr.reinterpret_array(mi.UInt32, mi.ShapePtr(shape))[0]) for shape in loaded.shapes()]
     table = np.zeros(max(numbers, default=0) + 1, dtype=np.uint32)
     for number, shape in zip(numbers, loaded.shapes(), strict=True):
@@ -55,7 +55,7 @@ class Tables:
     """Materials by object: a colour or number of each, looked up for one ray or for many."""
 
     def __init__(self, mi: Any, scene: Scene) -> None:
-        self.dr: Any = importlib.import_module("drjit")
+        self.dr: Any = drjit
         self.mi, self.scalar = mi, mi.variant().startswith("scalar")
         self.materials = [scene.materials[thing.material] for thing in scene.objects]
         names = ("ambient", "diffuse", "specular", "reflect", "transmit")
