@@ -25,6 +25,8 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/containment.py
 	$(BIN)/python -P benchmarks/laws_speed.py
 	$(BIN)/python -P benchmarks/laws_table.py
+	$(BIN)/python -P benchmarks/peers.py
+	$(BIN)/python -P benchmarks/stochastic_gate.py
 
 setup: $(READY)
 
@@ -50,4 +52,4 @@ schemas: $(READY)
 	  Path('reports/schema/chart-1.json').write_text(chart.schema())"
 
 clean:
-	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-stability raycheck-chart examples/*/tracer
+	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-stability raycheck-chart raycheck-peers examples/*/tracer

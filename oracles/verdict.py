@@ -68,6 +68,39 @@ class Judged(Frozen):
     worst: Pixel | None = None
 
 
+class Sampled(Frozen):
+    """A stochastic tracer's renders against the reference's mean.
+
+    p_image, p_tile: least p-values; tiles_outside: tiles beyond their corrected rate; spots: pixels where no lawful
+    mean lies; histogram: the tiles' p-values in ten equal bins, level for a right tracer; smallest_bias: relative
+    bias of the whole image that would have been seen nine times in ten.
+    """
+
+    runs: int
+    spp: int
+    alpha: float
+    p_image: float
+    p_tile: float
+    tiles: int
+    tiles_outside: int
+    spots: int
+    histogram: tuple[int, ...]
+    smallest_bias: float
+
+
+class Appearance(Frozen):
+    """Numbers that people compare pictures by; None where the package for it is not installed.
+
+    rmse: linear; psnr: dB of what is shown, white 1; flip, delta_e_2000, delta_e_itp: means over the picture.
+    """
+
+    rmse: float
+    psnr: float
+    flip: float | None = None
+    delta_e_2000: float | None = None
+    delta_e_itp: float | None = None
+
+
 class Process(Frozen):
     """What a tracer's process did."""
 
@@ -115,6 +148,55 @@ class Verdict(Frozen):
     reproduce: str = ""
     judged: Judged | None = None
     case: Case | None = None
+    sampled: Sampled | None = None
+    appearance: Appearance | None = None
     process: Process | None = None
     pictures: Pictures = Pictures()
     seconds: float = 0.0
+
+
+class Standing(Frozen):
+    """A party against certified truth.
+
+    p50, p99, worst: quantiles of the pixels' largest absolute error, truth's own bound added; outside: pixels beyond
+    the bound of the party's own precision and storage; explained: those that its habit accounts for; at: (i, j) of
+    the worst.
+    """
+
+    party: str
+    precision: str
+    seconds: float
+    message: str = ""
+    p50: float = 0.0
+    p99: float = 0.0
+    worst: float = 0.0
+    at: tuple[int, int] = (0, 0)
+    outside: int = 0
+    explained: int = 0
+    reason: str = ""
+
+
+class Pair(Frozen):
+    """Two parties: where they differ most, by how much, and which of them lies outside its bound there."""
+
+    first: str
+    second: str
+    worst: float
+    at: tuple[int, int]
+    wrong: tuple[str, ...]
+
+
+class SceneStandings(Frozen):
+    """One scene: every party's standing, and every pair's worst difference."""
+
+    scene: str
+    certified: float
+    """Largest bound of the certified values, in pixels that could be decided."""
+    undecided: int
+    standings: tuple[Standing, ...]
+    pairs: tuple[Pair, ...]
+
+    @property
+    def unexplained(self) -> int:
+        """Pixels outside a bound that nothing accounts for."""
+        return sum(standing.outside - standing.explained for standing in self.standings)

@@ -17,8 +17,9 @@ from raycheck.errors import BROKEN, CONFORMS, INTERRUPTED, MISUSE, RaycheckError
 EXIT_CODES = """exit codes: 0 conforms, 1 does not conform, 2 the call, scene or manifest is wrong,
 3 the tracer could not be started, 4 the suite itself failed, 130 interrupted"""
 
-SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]], images:DIR
-(one image a scene), python:module:attr (trusted code), or nothing and the tracer's command after --:
+SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]],
+builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock|/path]], builtin:povray, images:DIR (one image a scene),
+python:module:attr (trusted code), or nothing and the tracer's command after --:
   raycheck check -- ./tracer {scene} {image}"""
 
 ARRAYS = """SUBJECT is python:module:attr with sphere(o, v, c, r) or refract(v, n, index) on arrays (trusted code);
@@ -100,7 +101,18 @@ def parser() -> Parser:
 
     scenes = _add(commands, "scenes", "list the catalogue, or print one scene")
     scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
-    scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")
+    scenes.add_argument(
+        "--as",
+        dest="form",
+        choices=("json", "text", "mitsuba", "povray"),
+        default="json",
+        help="notation (%(default)s)",
+    )
+
+    peers = _add(commands, "peers", "render with every peer at hand, and let certified truth say who is wrong")
+    peers.add_argument("--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes)")
+    peers.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")
+    peers.add_argument("--out", default="raycheck-peers", metavar="DIR", help="where the report goes (%(default)s)")
 
     stability = _add(commands, "stability", "where methods fail: maps, frontiers, named cases", ARRAYS)
     stability.add_argument("subject", nargs="?", metavar="SUBJECT", help="a tracer to ask as well")

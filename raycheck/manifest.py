@@ -58,6 +58,8 @@ class Manifest(Frozen):
     image: Literal["pfm", "exr", "npy", "ppm", "png"] = "pfm"
     precision: Literal["float32", "float64"] = "float32"
     features: tuple[Literal["plane", "shadow", "reflect", "refract", "fresnel"], ...] | None = None
+    stochastic: bool = False
+    spp: Annotated[int, Field(ge=1, le=2**20, strict=True)] = 64
     timeout: Annotated[float, Field(gt=0, le=3600, strict=True)] = 30.0
     dialect: DialectTable = DialectTable()
 

@@ -70,7 +70,7 @@ def run(
     begin = time.monotonic()
     child: subprocess.Popen[bytes] | None = None
     try:
-        with _interrupts_held():
+        with interrupts_held():
             child = subprocess.Popen(
                 list(command),
                 cwd=cwd,
@@ -80,11 +80,11 @@ def run(
                 start_new_session=True,
                 env=dict(environment or own_environment()),
             )
-        _limit(child.pid, file_limit)
+        limit(child.pid, file_limit)
         how, tail = _watch(child, begin + timeout)
     finally:
         if child is not None:
-            _kill(child)
+            end(child)
     seconds = time.monotonic() - begin
     code = child.returncode
     if how == "ended":
@@ -93,7 +93,7 @@ def run(
 
 
 @contextlib.contextmanager
-def _interrupts_held() -> Iterator[None]:
+def interrupts_held() -> Iterator[None]:
     """Let SIGINT and SIGTERM wait: one that struck while a child starts would leave it running, known to nobody."""
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -117,7 +117,7 @@ def own_environment() -> dict[str, str]:
     return {name: os.environ[name] for name in keep if name in os.environ}
 
 
-def _limit(pid: int, file_limit: int) -> None:
+def limit(pid: int, file_limit: int) -> None:
     """No core dumps, no larger file than an image of the format can be."""
     with contextlib.suppress(OSError, AttributeError):  # it may have ended already; not all systems have prlimit
         resource.prlimit(pid, resource.RLIMIT_CORE, (0, 0))
@@ -163,7 +163,7 @@ def _wait(child: subprocess.Popen[bytes], deadline: float) -> str:
     return "ended"
 
 
-def _kill(child: subprocess.Popen[bytes]) -> None:
+def end(child: subprocess.Popen[bytes]) -> None:
     """End the whole group, and collect the child."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(child.pid, signal.SIGKILL)
@@ -184,7 +184,7 @@ def clean(output: bytes) -> str:
 
 def start(command: Sequence[str], cwd: Path, file_limit: int) -> subprocess.Popen[bytes]:
     """Start a program that is talked to, its three streams as pipes; raise OSError if it cannot start."""
-    with _interrupts_held():
+    with interrupts_held():
         child = subprocess.Popen(
             list(command),
             cwd=cwd,
@@ -194,13 +194,13 @@ def start(command: Sequence[str], cwd: Path, file_limit: int) -> subprocess.Pope
             start_new_session=True,
             env=own_environment(),
         )
-    _limit(child.pid, file_limit)
+    limit(child.pid, file_limit)
     return child
 
 
 def stop(child: subprocess.Popen[bytes]) -> None:
     """End a started program with its whole group, and close its streams."""
-    _kill(child)
+    end(child)
     for stream in (child.stdin, child.stderr):
         if stream is not None:
             with contextlib.suppress(OSError):  # what was not yet sent has nowhere to go

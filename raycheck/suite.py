@@ -16,11 +16,14 @@ from oracles.conventions import Convention, transfer_of
 from oracles.images import Picture
 from oracles.images.writing import png_bytes
 from oracles.inference import Exhibit, infer, worth_saying
+from oracles.metrics import appearance
+from oracles.statistics import Found
 from oracles.truth import Truth, truth
-from oracles.verdict import USABLE, Pictures, Verdict
+from oracles.verdict import USABLE, Appearance, Pictures, Verdict
 from raycheck.formulas import formula_of
 from raycheck.known import Known
 from raycheck.lanes import best_lanes
+from raycheck.sampling import sample
 from raycheck.subjects import Attempt, Subject
 from reference_tracer.dialects import Dialect
 from reference_tracer.formulas.display import encode
@@ -102,6 +105,8 @@ class Hearing:
 
     def _asked(self, rung: Rung, ahead: _Ahead) -> Verdict:
         """Render, compare, keep the pictures."""
+        if self.subject.spp is not None:
+            return _sampled(self.subject, self.plan, rung, ahead, self.images, self.subject.spp)
         attempt = self.subject.render(self.plan.scene(rung), self.plan.seed)
         self.attempts[rung.name] = replace(attempt, picture=None)
         expected = ahead.truth(rung)
@@ -126,8 +131,9 @@ class Hearing:
         more = "; a linear image is not asked for its display encoding" if linear else ""
         verdict = _start(rung, self.plan, comparison.word, comparison.message + more)
         pictures = _keep(self.images, rung.name, expected, picture, comparison)
-        evidence = _evidence(self.attempts[rung.name]) | {"judged": comparison.judged, "pictures": pictures}
-        return verdict.model_copy(update=evidence)
+        looks = _appearance(picture, expected) if comparison.word == "fail" else None
+        evidence = _evidence(self.attempts[rung.name]) | {"judged": comparison.judged, "appearance": looks}
+        return verdict.model_copy(update=evidence | {"pictures": pictures})
 
     def _compared(self, exhibit: Exhibit, found: Convention) -> tuple[Truth, Comparison]:
         """The picture judged under the conventions found."""
@@ -233,11 +239,37 @@ def _settled(subject: Subject, plan: Plan, rung: Rung, words: dict[str, str]) ->
     return None
 
 
+def _sampled(subject: Subject, plan: Plan, rung: Rung, ahead: _Ahead, images: Path, spp: int) -> Verdict:
+    """Of a stochastic tracer: its mean against the pixels' averages over their areas."""
+    expected = ahead.truth(rung)
+    tried = sample(subject, plan.scene(rung), plan.seed, spp, expected, best_lanes())
+    if isinstance(tried, Attempt):
+        verdict = _start(rung, plan, tried.word or "invalid", tried.message)
+        pictures = _keep(images, rung.name, expected, None, None)
+        return verdict.model_copy(update=_evidence(tried) | {"pictures": pictures})
+    verdict = _start(rung, plan, tried.found.word, tried.found.message)
+    averaged = replace(expected, pixels=tried.reference, doubts=np.zeros_like(expected.doubts))
+    pictures = _keep(images, rung.name, averaged, tried.attempt.picture, tried.found)
+    return verdict.model_copy(update=_evidence(tried.attempt) | {"pictures": pictures, "sampled": tried.found.sampled})
+
+
+def _appearance(picture: Picture, expected: Truth) -> Appearance:
+    """How wrong a wrong picture looks; encoded ones are linear to nobody, so their shown values count twice."""
+    display = expected.scene.display
+    shown = encode(expected.pixels, display) / 255.0
+    if picture.maximum is not None:
+        got = picture.values / picture.maximum
+        return appearance(shown, got, shown, got)
+    return appearance(expected.pixels, picture.values, shown, encode(picture.values, display) / 255.0)
+
+
 def _evidence(attempt: Attempt) -> dict[str, object]:
     return {"process": attempt.process, "seconds": attempt.seconds}
 
 
-def _keep(images: Path, name: str, expected: Truth, picture: Picture | None, comparison: Comparison | None) -> Pictures:
+def _keep(
+    images: Path, name: str, expected: Truth, picture: Picture | None, comparison: Comparison | Found | None
+) -> Pictures:
     """Write the PNGs that the report shows; return their names relative to the report."""
     display = expected.scene.display
     files = {"expected": encode(expected.pixels, display)}

@@ -24,7 +24,7 @@ def run(options: Namespace) -> int:
     if options.explore < 0:
         raise UsageError(f"--explore {options.explore}: not a number of cases", "0 or more")
     checks = {f"image/{rung.name}" for rung in ladder()} | check_names()
-    known_failures = known.load(Path(options.known) if options.known else None, checks)
+    known_failures = known.load(Path(options.known), checks) if options.known else known.shipped(subject.spec, checks)
     order = session.Order(
         subject=subject,
         scenes=scenes,

@@ -10,7 +10,9 @@ import numpy as np
 
 from oracles.compare import compare
 from oracles.golden import GoldenError, load
+from oracles.golden.record import Golden
 from oracles.images import ImageError, Picture, read
+from oracles.metrics import appearance
 from oracles.truth import DOUBTS, truth
 from raycheck.errors import CONFORMS, DIFFERS, UsageError
 from raycheck.lanes import best_lanes
@@ -45,4 +47,18 @@ def run(options: Namespace) -> int:
     print(f"pixels: {judged.outside} of {judged.pixels} outside, in doubt: {doubts or 'none'}")
     seen = f"median {judged.tolerance_median:.3g}, 99 % {judged.tolerance_99:.3g}, worst {judged.tolerance_worst:.3g}"
     print(f"tolerance: {seen}")
+    print(f"elsewhere: {_looks(picture, golden)}")
     return CONFORMS if found.word == "pass" else DIFFERS
+
+
+def _looks(picture: Picture, golden: Golden) -> str:
+    """What other tools would say; no part of the verdict."""
+    display = golden.scene.display
+    shown = encode(golden.value, display) / 255.0
+    if picture.maximum is not None:
+        got = picture.values / picture.maximum
+        a = appearance(shown, got, shown, got)
+    else:
+        a = appearance(golden.value, picture.values, shown, encode(picture.values, display) / 255.0)
+    words = {"RMSE": a.rmse, "PSNR": a.psnr, "FLIP": a.flip, "ΔE 2000": a.delta_e_2000, "ΔE ITP": a.delta_e_itp}
+    return ", ".join(f"{word} {x:.3g}" for word, x in words.items() if x is not None)

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from argparse import Namespace
 
+from oracles.peers.cannot import CannotSayError
+from oracles.peers.mitsuba_xml import to_mitsuba
+from oracles.peers.povray_scene import to_povray
 from raycheck.commands.options import scene_of
-from raycheck.errors import CONFORMS
+from raycheck.errors import CONFORMS, UsageError
 from scenes.catalogue import ladder
 from scenes.json_form import to_json
 from scenes.text import to_text
+
+NOTATIONS = {"json": to_json, "text": to_text, "mitsuba": to_mitsuba, "povray": to_povray}
 
 
 def run(options: Namespace) -> int:
@@ -19,5 +24,8 @@ def run(options: Namespace) -> int:
             print(f"{rung.name:<{width}}  {rung.teaches}  [L11: {rung.slide}]")
         return CONFORMS
     scene = scene_of(options.name)
-    print(to_json(scene) if options.form == "json" else to_text(scene), end="")
+    try:
+        print(NOTATIONS[options.form](scene), end="")
+    except CannotSayError as error:
+        raise UsageError(f"{scene.name} --as {options.form}: it has no words for {error}", "docs/peers.md") from None
     return CONFORMS

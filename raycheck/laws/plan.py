@@ -81,7 +81,7 @@ def chosen(names: Sequence[str]) -> list[AnyLaw]:
 def answerable(subject: Subject, law: AnyLaw) -> bool:
     """Whether this kind of subject can be asked at all: pictures of any scene, or formulas."""
     if isinstance(law, PictureLaw):
-        return not isinstance(subject, ImagesSubject)
+        return not isinstance(subject, ImagesSubject) and subject.spp is None
     return prober_of(subject) is not None
 
 

@@ -13,6 +13,8 @@ from raycheck.manifest import DialectTable, Manifest
 from raycheck.subjects.command import CommandSubject
 from raycheck.subjects.images import ImagesSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
+from raycheck.subjects.mitsuba import MitsubaSubject
+from raycheck.subjects.povray import PovraySubject
 from raycheck.subjects.subject import Subject
 from reference_tracer.dialects import SCENE_MODEL, Dialect
 
@@ -25,8 +27,12 @@ def attach(spec: str, precision: str = "float32", dialect: Dialect = SCENE_MODEL
     match kind:
         case "builtin" if rest.split("/")[0] == "reference":
             return ReferenceSubject(rest)
+        case "builtin" if rest.split("/")[0] == "mitsuba":
+            return MitsubaSubject(rest)
+        case "builtin" if rest.split("/")[0] == "povray":
+            return PovraySubject(rest)
         case "builtin":
-            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference")
+            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, mitsuba or povray")
         case "images":
             return ImagesSubject(Path(rest), precision, dialect)
         case "python" if rest.count(":") == 1:

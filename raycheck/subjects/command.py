@@ -37,8 +37,9 @@ class CommandSubject:
         self.image_form: str = self.manifest.image
         self.dialect = self.manifest.dialect.choices()
         self.features: tuple[str, ...] | None = self.manifest.features
+        self.spp: int | None = self.manifest.spp if self.manifest.stochastic else None
         command = " ".join(self.manifest.render)
-        for word in ("{scene}", "{image}"):
+        for word in ("{scene}", "{image}", "{seed}") if self.spp else ("{scene}", "{image}"):
             if word not in command:
                 raise UsageError(f"render command {command!r} lacks {word}", "for example ./tracer {scene} {image}")
 
@@ -70,6 +71,7 @@ class CommandSubject:
             "{width}": str(scene.image.width),
             "{height}": str(scene.image.height),
             "{seed}": str(seed),
+            "{spp}": str(self.manifest.spp),
         }
         words = []
         for word in self.manifest.render:

@@ -17,6 +17,7 @@ class ImagesSubject:
     in_process = False
     scene_form = ""
     features: tuple[str, ...] | None = None
+    spp: int | None = None
 
     def __init__(self, folder: Path, precision: str, dialect: Dialect) -> None:
         if not folder.name or not folder.is_dir():

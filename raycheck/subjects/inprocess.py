@@ -33,6 +33,7 @@ class ReferenceSubject:
     scene_form = ""
     image_form = ""
     features: tuple[str, ...] | None = None
+    spp: int | None = None
     dialect = SCENE_MODEL
 
     def __init__(self, spec: str) -> None:
@@ -72,6 +73,7 @@ class PythonSubject:
     scene_form = "json"
     image_form = "array"
     features: tuple[str, ...] | None = None
+    spp: int | None = None
 
     def __init__(self, module: str, attribute: str, precision: str, dialect: Dialect) -> None:
         self.module, self.attribute = module, attribute

@@ -25,7 +25,10 @@ class Attempt:
 
 
 class Subject(Protocol):
-    """One tracer; `spec` is what attaches it again on the command line, `dialect` the conventions it declares."""
+    """One tracer; `spec` is what attaches it again on the command line, `dialect` the conventions it declares.
+
+    spp: samples a pixel of a stochastic tracer's render, None of others.
+    """
 
     name: str
     spec: str
@@ -35,6 +38,7 @@ class Subject(Protocol):
     features: tuple[str, ...] | None
     in_process: bool
     dialect: Dialect
+    spp: int | None
 
     def prepare(self) -> None:
         """Build or load it; raise StartError if that fails."""

@@ -26,6 +26,7 @@ COMMANDS = (
     "render",
     "golden",
     "compare",
+    "peers",
     "scenes",
     "stability",
     "chart",

@@ -1,0 +1,1 @@
+"""What each peer is known to do otherwise, shipped with its reason."""
