@@ -49,6 +49,7 @@ def parser() -> Parser:
     check.add_argument("--seed", type=int, default=0, metavar="N", help="handed to the tracer as {seed} (%(default)s)")
     check.add_argument("--known", metavar="FILE", help="TOML list of known failures: [[known]] check, reason, url")
     check.add_argument("--no-block", action="store_true", help="ask every rung, even where one it builds on failed")
+    check.add_argument("--sandbox", action="store_true", help="build and run a copy of the folder where it reaches nothing")
 
     smoke = _add(
         commands,

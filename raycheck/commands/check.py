@@ -8,12 +8,18 @@ from pathlib import Path
 from raycheck import known, session
 from raycheck.commands.options import command_line, size_of, subject_of
 from raycheck.errors import UsageError
+from raycheck.subjects import Subject, jailed
+from raycheck.workspace import workspace
 from scenes.catalogue import ladder
 
 
 def run(options: Namespace) -> int:
     """Check, tell, and return the exit code."""
-    subject = subject_of(options)
+    with workspace() as folder:
+        return _checked(options, jailed(subject_of(options), folder) if options.sandbox else subject_of(options))
+
+
+def _checked(options: Namespace, subject: Subject) -> int:
     scenes = options.scenes.split(",") if options.scenes is not None else None
     if scenes == [""]:
         raise UsageError("--scenes is empty", "names from `raycheck scenes`, separated by commas")
@@ -48,4 +54,6 @@ def repeat_line(options: Namespace) -> str:
         words += ["--seed", str(options.seed)]
     if options.known:
         words += ["--known", options.known]
+    if options.sandbox:
+        words.append("--sandbox")
     return session.repeat_line(words, ["--", *options.tracer] if options.tracer is not None else [])
