@@ -90,6 +90,10 @@ def parser() -> Parser:
     scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
     scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")
 
+    init = _add(commands, "init", "write a tracer to begin with: all but the formulas is done")
+    init.add_argument("language", choices=("cpp", "python", "rust", "go", "java", "javascript"), help="its language")
+    init.add_argument("folder", metavar="DIR", help="a new or empty folder")
+
     report = _add(commands, "report", "write a report again from its results")
     report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")
 
