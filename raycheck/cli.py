@@ -90,6 +90,18 @@ def parser() -> Parser:
     scenes.add_argument("name", nargs="?", metavar="NAME", help="a name of the catalogue, or a scene file")
     scenes.add_argument("--as", dest="form", choices=("json", "text"), default="json", help="notation (%(default)s)")
 
+    grade = _add(commands, "grade", "grade a class of submissions by a rubric, in a sandbox")
+    grade.add_argument("submissions", metavar="SUBMISSIONS", help="a folder with one folder or archive a submission")
+    grade.add_argument("--rubric", metavar="FILE", help="TOML: groups of rungs and their points (one ships)")
+    grade.add_argument("--out", required=True, metavar="DIR", help="where records, pages and grades.csv go")
+    grade.add_argument("--jobs", type=int, default=1, metavar="N", help="submissions at a time (%(default)s)")
+    grade.add_argument("--seed", type=int, metavar="N", help="of picture size and hidden scenes (drawn once per DIR)")
+    grade.add_argument("--adjust", metavar="FILE", help="CSV of points by hand: submission, points, reason")
+    grade.add_argument("--only", metavar="A,B", help="only these submissions")
+    grade.add_argument("--rerun-failed", action="store_true", help="ask those again that were not graded or too slow")
+    grade.add_argument("--explain", metavar="NAME", help="grade nothing; say how this score came about")
+    grade.add_argument("--i-trust-this-code", action="store_true", help="run the submissions without a sandbox")
+
     init = _add(commands, "init", "write a tracer to begin with: all but the formulas is done")
     init.add_argument("language", choices=("cpp", "python", "rust", "go", "java", "javascript"), help="its language")
     init.add_argument("folder", metavar="DIR", help="a new or empty folder")

@@ -13,12 +13,13 @@ import numpy as np
 from oracles.compare import Comparison, compare, difference
 from oracles.images import Picture
 from oracles.images.writing import png_bytes
-from oracles.truth import Truth, truth
+from oracles.truth import Truth
 from oracles.verdict import USABLE, Pictures, Verdict
 from raycheck.formulas import formula_of
 from raycheck.known import Known
 from raycheck.lanes import best_lanes
 from raycheck.subjects import Attempt, Subject
+from raycheck.truths import truth
 from reference_tracer.formulas.display import encode
 from scenes.catalogue import Rung
 from scenes.model import Scene
