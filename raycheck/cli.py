@@ -95,6 +95,7 @@ def parser() -> Parser:
     grade.add_argument("--rubric", metavar="FILE", help="TOML: groups of rungs and their points (one ships)")
     grade.add_argument("--out", required=True, metavar="DIR", help="where records, pages and grades.csv go")
     grade.add_argument("--jobs", type=int, default=1, metavar="N", help="submissions at a time (%(default)s)")
+    grade.add_argument("--cluster", metavar="ADDRESS", help="grade on a Dask cluster instead, tcp://HOST:PORT")
     grade.add_argument("--seed", type=int, metavar="N", help="of picture size and hidden scenes (drawn once per DIR)")
     grade.add_argument("--adjust", metavar="FILE", help="CSV of points by hand: submission, points, reason")
     grade.add_argument("--only", metavar="A,B", help="only these submissions")

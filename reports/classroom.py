@@ -20,6 +20,8 @@ STYLES = ("page.css", "class.css")
 BANDS = {"full": "full score", "part": "part of it", "none": "no points", "ungraded": "not graded"}
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """A cell that begins so is run as a formula by spreadsheets (OWASP, "CSV Injection")."""
+HIDDEN = "image/hidden-"
+"""How checks begin whose scenes are each run's own."""
 SHOWN = 6
 """Checks named in a row of the class."""
 
@@ -177,7 +179,7 @@ def rates(classroom: Classroom) -> list[Rate]:
         for group in graded.record.groups:
             for line in group.lines:
                 # Hidden scenes have names that mean nothing to a class
-                name = group.name if line.check.startswith("image/drawn-") else line.check
+                name = group.name if line.check.startswith(HIDDEN) else line.check
                 counted.setdefault(name, Counter())[line.counts] += 1
     found = [Rate(name, n["earned"], n["lost"], n["excused"]) for name, n in counted.items()]
     return sorted(found, key=lambda rate: -rate.lost)
@@ -216,7 +218,7 @@ def _tiles(classroom: Classroom) -> list[tuple[str, str]]:
 def losses(graded: Graded) -> str:
     """The checks that cost points, the first few by name."""
     lost = [
-        "a hidden scene" if line.check.startswith("image/drawn-") else line.check.removeprefix("image/")
+        "a hidden scene" if line.check.startswith(HIDDEN) else line.check.removeprefix("image/")
         for group in graded.record.groups
         for line in group.lines
         if line.counts == "lost"

@@ -64,8 +64,8 @@ class _Draws:
 BLACK: Colour = (0.0, 0.0, 0.0)
 
 
-def generate(seed: int, width: int = 96, height: int = 72) -> Scene:
-    """The scene of a seed."""
+def generate(seed: int, name: str = "", width: int = 96, height: int = 72) -> Scene:
+    """The scene of a seed. Unless it is given a name it has its seed for one."""
     draw = _Draws(seed)
     kinds = [draw.choice(KINDS) for _ in range(1 + int(draw.number(0.0, 3.98)))]
     spheres = _spheres(draw, kinds)
@@ -80,8 +80,8 @@ def generate(seed: int, width: int = 96, height: int = 72) -> Scene:
     used = {thing.material for thing in objects}
     return Scene(
         raycheck=1,
-        name=f"drawn-{seed}",
-        source=f"L11: {SLIDE}; drawn from seed {seed}",
+        name=name or f"drawn-{seed}",
+        source=f"L11: {SLIDE}",
         image=ImagePlane(width=width, height=height, sample=draw.choice(((0.0, 0.0), (0.5, 0.5)))),
         camera=_camera(draw, width / height),
         background=draw.colour(0.0, 0.3),
@@ -156,9 +156,9 @@ class Drawn(Rung):
         return self.drawn
 
 
-def drawn(seed: int) -> Drawn:
+def drawn(seed: int, name: str = "") -> Drawn:
     """The rung of a seed."""
-    scene = generate(seed)
+    scene = generate(seed, name)
     return Drawn(scene.name, SLIDE, "a scene that nobody has seen before", _requires(scene), drawn=scene)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from raycheck.errors import CONFORMS, UsageError
 from raycheck.grading import adjust, rubric
+from raycheck.grading.cluster import Cluster
 from raycheck.grading.one import record_path
 from raycheck.grading.pool import Here, Pool, Processes
 from raycheck.grading.run import Order, grade_class
@@ -54,6 +55,8 @@ def _room(options: Namespace, limits: Limits) -> Room:
 
 
 def _pool(options: Namespace) -> Pool:
+    if options.cluster is not None:
+        return Cluster(options.cluster)
     return Processes(options.jobs) if options.jobs > 1 else Here()
 
 

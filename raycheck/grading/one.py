@@ -62,7 +62,7 @@ class Asked:
     def hidden(self) -> list[Rung]:
         """The scenes that nobody has seen."""
         count = self.rubric.hidden.scenes if self.rubric.hidden else 0
-        return [drawn(_number(f"hidden {self.seed} {k}")) for k in range(count)]
+        return [drawn(_number(f"hidden {self.seed} {k}"), f"hidden-{k + 1}") for k in range(count)]
 
     def key(self, content: str) -> str:
         """One word for everything that the scores of this content follow from."""
@@ -87,29 +87,47 @@ def record_path(out: Path, submission: Submission) -> Path:
     return out / RECORDS / f"{submission.slug}.json"
 
 
+@dataclass(frozen=True)
+class Arrived:
+    """A submission as it was taken in: where it is, or why it was refused; and the key of what follows from it."""
+
+    root: Path | None
+    key: str
+    refused: str = ""
+
+
+def arrive(asked: Asked, submission: Submission, folder: Path) -> Arrived:
+    """Take a submission into a folder."""
+    try:
+        root = take_in(submission, folder)
+    except IntakeError as error:
+        return Arrived(None, asked.key(f"refused: {error}"), str(error))
+    return Arrived(root, asked.key(digest(root)))
+
+
+def standing(asked: Asked, submission: Submission, key: str) -> Record | None:
+    """The record of an earlier run, if it still stands: content, suite, rubric and seed are what they were."""
+    earlier = grades.read(record_path(asked.out, submission))
+    return earlier if earlier and (earlier.key, earlier.name) == (key, submission.name) else None
+
+
 def grade(asked: Asked, submission: Submission, again: bool = False) -> Record:
     """The record of a submission: that of an earlier run where it still stands, unless asked for again."""
     with workspace() as folder:
-        try:
-            root = take_in(submission, folder)
-            key = asked.key(digest(root))
-        except IntakeError as error:
-            root, key, ended = None, asked.key(f"refused: {error}"), str(error)
-        earlier = grades.read(record_path(asked.out, submission))
-        if earlier and earlier.key == key and earlier.name == submission.name and not again:
+        arrived = arrive(asked, submission, folder)
+        earlier = standing(asked, submission, arrived.key)
+        if earlier and not again:
             return earlier
         student = asked.out / STUDENTS / submission.slug
         shutil.rmtree(student, ignore_errors=True)
         student.mkdir(parents=True)
         try:
-            if root is None:
-                raise _EndedError("refused", ended)
-            record = _asked(asked, submission, root, key, student)
+            record = _asked(asked, submission, arrived, student)
         except _EndedError as end:
             record = Record(
                 name=submission.name,
                 slug=submission.slug,
-                key=key,
+                key=arrived.key,
                 outcome=end.outcome,
                 message=end.message,
                 groups=nothing(asked.rubric),
@@ -118,8 +136,10 @@ def grade(asked: Asked, submission: Submission, again: bool = False) -> Record:
         return record
 
 
-def _asked(asked: Asked, submission: Submission, root: Path, key: str, student: Path) -> Record:
-    subject = _subject(asked, root)
+def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path) -> Record:
+    if arrived.root is None:
+        raise _EndedError("refused", arrived.refused)
+    subject = _subject(asked, arrived.root)
     _prepare(subject)
     hidden = asked.hidden
     with workspace() as private:
@@ -128,14 +148,15 @@ def _asked(asked: Asked, submission: Submission, root: Path, key: str, student: 
             secret = _judged(subject, hidden, None, student if _reveals(asked.rubric) else private)
         except StartError as error:
             raise _EndedError("start", str(error)) from None
-    verdicts = {verdict.check.removeprefix("image/"): verdict for verdict in (*shown, *secret)}
-    _write_results(asked, subject, shown, secret, student)
+    told = secret if _reveals(asked.rubric) else [veiled(verdict) for verdict in secret]
+    verdicts = {verdict.check.removeprefix("image/"): verdict for verdict in (*shown, *told)}
+    _write_results(asked, subject, (*shown, *told), student)
     broken = all(verdict.verdict in BROKEN for verdict in verdicts.values())
     first = next((v.message for v in verdicts.values() if v.verdict in BROKEN), "")
     return Record(
         name=submission.name,
         slug=submission.slug,
-        key=key,
+        key=arrived.key,
         tracer=subject.name,
         outcome="protocol" if broken else "graded",
         message=first if broken else "",
@@ -187,22 +208,19 @@ def veiled(verdict: Verdict) -> Verdict:
     return verdict.model_copy(update=veil)
 
 
-def _write_results(
-    asked: Asked, subject: CommandSubject, shown: Sequence[Verdict], secret: Sequence[Verdict], student: Path
-) -> None:
-    told = list(secret) if _reveals(asked.rubric) else [veiled(verdict) for verdict in secret]
+def _write_results(asked: Asked, subject: CommandSubject, verdicts: Sequence[Verdict], student: Path) -> None:
     width, height = asked.size
     found = results.Results(
         suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
-        subject=session.described(Patience(subject)),
+        subject=session.described(subject),
         machine=machine(),
         started="",
         command="",
         seed=0,
         size=f"{width}x{height}",
-        seconds=sum(verdict.seconds for verdict in (*shown, *secret)),
-        planned=len(shown) + len(told),
-        verdicts=tuple((*shown, *told)),
+        seconds=sum(verdict.seconds for verdict in verdicts),
+        planned=len(verdicts),
+        verdicts=tuple(verdicts),
         complete=True,
     )
     results.write(found, student)

@@ -24,9 +24,10 @@ from raycheck.sandbox.room import Room
 from reports import classroom, grades
 from reports.grades import Graded
 from scenes.catalogue import catalogue_hash
+from scenes.json_form import to_json
 from scenes.disk import read_bounded, write_whole
 
-RUN = "run.json"
+RUN, HIDDEN = "run.json", "hidden"
 
 
 class _Run(BaseModel):
@@ -55,9 +56,10 @@ class Order:
 
 def grade_class(order: Order) -> list[Graded]:
     """Grade what is not graded yet, write all outputs, return the class in the submissions' order."""
-    for folder in (order.out, order.out / RECORDS, order.out / STUDENTS):
+    for folder in (order.out, order.out / RECORDS, order.out / STUDENTS, order.out / HIDDEN):
         session.make_folder(folder)
     asked = Asked(order.rubric, seed_of(order.out, order.seed), order.out, order.room)
+    _keep_hidden(asked)
     chosen = _chosen(order)
     rerun = [s for s in chosen if order.again and _failed(order.out, s)]
     progress = Progress("grading", len(chosen))
@@ -68,6 +70,12 @@ def grade_class(order: Order) -> list[Graded]:
     finally:
         progress.close()
     return write(order, asked)
+
+
+def _keep_hidden(asked: Asked) -> None:
+    """The hidden scenes, for the lecturer who is asked about one."""
+    for rung in asked.hidden:
+        write_whole(asked.out / HIDDEN / f"{rung.name}.json", to_json(rung.scene()).encode())
 
 
 def _failed(out: Path, submission: Submission) -> bool:

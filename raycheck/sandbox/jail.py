@@ -20,11 +20,11 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from raycheck.errors import StartError
+from raycheck.errors import CANNOT_START, RaycheckError
 from raycheck.process import Hold
 from raycheck.sandbox import census, toolchains
 from raycheck.sandbox.cgroup import Cgroup, cgroup
@@ -46,25 +46,30 @@ _ENTER = 'for door; do shift; [ "$door" = -- ] && exec "$@"; echo 0 > "$door" ||
 _NOT_STARTED = re.compile(rb"^bwrap: execvp (.+): ([^:]+)\n?\Z", re.MULTILINE)
 
 
+@dataclass
+class SandboxError(RaycheckError):
+    """This machine has no sandbox: nothing that a submission could do about it."""
+
+    code: int = CANNOT_START
+
+
 @dataclass(frozen=True)
 class Jail:
-    """Limits, and more that may be read: what jails of a run have in common."""
+    """Limits: what the jails of a run have in common, on whatever machine. Raises SandboxError where none can be."""
 
     limits: Limits = Limits()
-    readable: tuple[Path, ...] = field(default_factory=toolchains.folders)
 
     def __post_init__(self) -> None:
-        reason = missing()
-        if reason:
-            raise StartError(f"no sandbox: {reason}", "apt-get install bubblewrap; user namespaces must be allowed")
+        _demand()
 
     @contextlib.contextmanager
     def hold(self, read: Sequence[Path], write: Sequence[Path]) -> Iterator[Hold]:
         """A hold for one run; the folders in `write` become the jail's user's."""
+        _demand()  # again: another machine may have sent it
         for folder in write:
             give(folder)
         with cgroup(self.limits) as group:
-            yield _Cell(self.limits, (*self.readable, *read), tuple(write), group)
+            yield _Cell(self.limits, (*toolchains.folders(), *read), tuple(write), group)
 
 
 @dataclass
@@ -151,6 +156,12 @@ class _Cell:
             child.wait(timeout=5.0)
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(child.pid, signal.SIGKILL)
+
+
+def _demand() -> None:
+    reason = missing()
+    if reason:
+        raise SandboxError(f"no sandbox: {reason}", "apt-get install bubblewrap; user namespaces must be allowed")
 
 
 def give(folder: Path) -> None:
