@@ -35,7 +35,7 @@ GAP = 0.25
 """Least distance between things: some hundred times the epsilon that a float32 tracer needs here."""
 FLOOR = -1.5
 EYE = -4.0
-"""Place of the eye on the z axis, before it is moved: the scene's extent is 4 or more, which sets the lawful epsilon."""
+"""Place of the eye on the z axis, before it is moved: an extent of 3.5 or more, which sets the lawful epsilon."""
 KINDS = ("matte", "glossy", "mirror", "glass")
 
 T = TypeVar("T")

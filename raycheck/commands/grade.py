@@ -7,7 +7,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from raycheck.errors import CONFORMS, UsageError
-from raycheck.grading import adjust, rubric
+from raycheck.grading import adjust, bundle, rubric
 from raycheck.grading.cluster import Cluster
 from raycheck.grading.one import record_path
 from raycheck.grading.pool import Here, Pool, Processes
@@ -22,6 +22,10 @@ from reports.classroom import CSV
 def run(options: Namespace) -> int:
     """Grade, and tell where the results are; or explain one score."""
     asked = rubric.load(Path(options.rubric) if options.rubric else None)
+    if options.gradescope_bundle is not None:
+        return _bundle(options)
+    if options.submissions is None:
+        raise UsageError("no SUBMISSIONS are given", "a folder with one folder or archive a submission")
     submissions = found(Path(options.submissions))
     names = {submission.name for submission in submissions}
     if options.jobs < 1:
@@ -41,8 +45,22 @@ def run(options: Namespace) -> int:
         return _explain(order, options.explain)
     graded = grade_class(order)
     for entry in graded:
-        print(f"{entry.score:6g} of {entry.record.points:g}  {grades.WORDS[entry.record.outcome]:>8}  {entry.record.name}")
+        print(
+            f"{entry.score:6g} of {entry.record.points:g}  {grades.WORDS[entry.record.outcome]:>8}  {entry.record.name}"
+        )
     print(f"grades: {order.out / CSV}\nclass: {order.out / 'index.html'}")
+    return CONFORMS
+
+
+def _bundle(options: Namespace) -> int:
+    """A Gradescope autograder in place of grades."""
+    path = Path(options.gradescope_bundle)
+    text = Path(options.rubric).read_text("utf-8") if options.rubric else rubric.default()
+    try:
+        bundle.write(path, text, options.i_trust_this_code)
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}", "a file that can be written") from None
+    print(path)
     return CONFORMS
 
 

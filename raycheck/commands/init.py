@@ -15,6 +15,8 @@ def run(options: Namespace) -> int:
     folder = Path(options.folder)
     for path in skeleton(options.language, folder):
         print(path)
-    print(f"the scene reader and the image writer are done, the formulas are marked YOURS; check it with:\n"
-          f"raycheck check {shlex.quote(str(folder))}")
+    print(
+        f"the scene reader and the image writer are done, the formulas are marked YOURS; check it with:\n"
+        f"raycheck check {shlex.quote(str(folder))}"
+    )
     return CONFORMS

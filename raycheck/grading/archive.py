@@ -13,7 +13,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
+from typing import IO, cast
 
 from raycheck.sandbox.intake import MAX_BYTES, MAX_ENTRIES, Intake, IntakeError
 
@@ -72,7 +72,7 @@ def _directory_bounded(archive: Path) -> None:
 
 
 def _tar(archive: Path, intake: Intake) -> None:
-    with _unpacked(archive) as stream, tarfile.open(fileobj=_Bounded(stream), mode="r|") as packed:
+    with _unpacked(archive) as stream, tarfile.open(fileobj=cast(IO[bytes], _Bounded(stream)), mode="r|") as packed:
         for entry in packed:
             name = entry.name.removeprefix("./")
             if name in ("", "."):
@@ -92,7 +92,7 @@ def _unpacked(archive: Path) -> Iterator[IO[bytes]]:
         start = raw.read(6)
         raw.seek(0)
         if start.startswith(b"\x1f\x8b"):
-            yield gzip.GzipFile(fileobj=raw)
+            yield cast(IO[bytes], gzip.GzipFile(fileobj=raw))
         elif start.startswith(b"BZh"):
             yield io.BufferedReader(_Stream(raw, bz2.BZ2Decompressor()))
         elif start == b"\xfd7zXZ\x00":

@@ -185,7 +185,9 @@ def _prepare(subject: CommandSubject) -> None:
         raise _EndedError("build", str(error)) from None
 
 
-def _judged(subject: CommandSubject, rungs: Sequence[Rung], size: tuple[int, int] | None, folder: Path) -> list[Verdict]:
+def _judged(
+    subject: CommandSubject, rungs: Sequence[Rung], size: tuple[int, int] | None, folder: Path
+) -> list[Verdict]:
     """Every rung is asked, also where one it builds on failed: what passes is earned."""
     shape = f" --size {size[0]}x{size[1]}" if size else ""
     plan = Plan(rungs, size, 0, False, Known({}), f"raycheck check .{shape} --scenes {{scene}}")
@@ -230,5 +232,3 @@ def failed(record: Record) -> bool:
     """Did something go wrong that another try might not meet: a build, a start, a timeout."""
     late = any(line.verdict in ("timeout", "crash") for group in record.groups for line in group.lines)
     return record.outcome != "graded" or late
-
-

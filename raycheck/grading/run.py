@@ -24,8 +24,8 @@ from raycheck.sandbox.room import Room
 from reports import classroom, grades
 from reports.grades import Graded
 from scenes.catalogue import catalogue_hash
-from scenes.json_form import to_json
 from scenes.disk import read_bounded, write_whole
+from scenes.json_form import to_json
 
 RUN, HIDDEN = "run.json", "hidden"
 

@@ -20,7 +20,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
@@ -57,7 +57,7 @@ class SandboxError(RaycheckError):
 class Jail:
     """Limits: what the jails of a run have in common, on whatever machine. Raises SandboxError where none can be."""
 
-    limits: Limits = Limits()
+    limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
         _demand()
@@ -109,7 +109,7 @@ class _Cell:
         return ["--perms", "1777", "--size", str(self.limits.temporary * MIB), "--tmpfs", place]
 
     def _shared(self) -> list[str]:
-        """What the run is given, where it is outside. Folders on the way are made, or they would be closed to nobody."""
+        """What the run is given, where it is outside; folders on the way are made first, else they are closed."""
         words: list[str] = []
         made: set[Path] = {Path("/"), Path("/tmp"), Path("/usr"), Path("/etc")}  # noqa: S108, inside
         for option, paths in (("--ro-bind", self.read), ("--bind", self.write)):
@@ -149,6 +149,8 @@ class _Cell:
 
     def end(self, child: subprocess.Popen[bytes]) -> None:
         """Kill the namespace's first process: the kernel kills all others, and it goes last."""
+        if child.poll() is not None:
+            return  # bwrap ends after it
         for pid in [pid for pid in census.descendants(child.pid) if census.parent_of(pid) == child.pid]:
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(pid, signal.SIGKILL)

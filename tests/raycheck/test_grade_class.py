@@ -99,9 +99,7 @@ def graded(folder: Path, out: Path, *words: str) -> dict[str, Record]:
 
 
 @pytest.mark.parametrize("language", TOOLS)
-def test_known_faults_cost_what_the_rubric_says(
-    classroom: Callable[..., Path], tmp_path: Path, language: str
-) -> None:
+def test_known_faults_cost_what_the_rubric_says(classroom: Callable[..., Path], tmp_path: Path, language: str) -> None:
     if not shutil.which(TOOLS[language]):
         pytest.skip(f"{TOOLS[language]} is needed to build this example")
     k = list(TOOLS).index(language)
@@ -144,7 +142,7 @@ def many(folder: Path, count: int) -> Path:
     """Submissions that are quickly done, every third of them wrong."""
     (folder / "rubric.toml").write_text(
         'name = "quick"\n[[group]]\nname = "a"\npoints = 3\nrungs = ["background"]\n'
-        '[hidden]\npoints = 2\nscenes = 1\n[limits]\nrender = 20\n',
+        "[hidden]\npoints = 2\nscenes = 1\n[limits]\nrender = 20\n",
         "utf-8",
     )
     for k in range(count):
@@ -173,7 +171,7 @@ def test_scores_are_the_same_whatever_the_number_of_jobs(tmp_path: Path) -> None
 def test_kill_9_at_random_moments_loses_nothing(tmp_path: Path) -> None:
     folder = many(tmp_path, 16)
     words = ["--rubric", str(tmp_path / "rubric.toml"), "--seed", "5", "--jobs", "2"]
-    draw = random.Random(11)
+    draw = random.Random(11)  # noqa: S311
     kills = 0
     for _ in range(6):
         run = subprocess.Popen(

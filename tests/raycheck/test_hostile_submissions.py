@@ -36,7 +36,7 @@ RUBRIC = Rubric.model_validate(
         },
     }
 )
-SECRET = "the-rubric-of-this-class"
+MARK = "the-rubric-of-this-class"
 
 READER = """
 import os, signal, socket, struct, subprocess, sys, time
@@ -55,7 +55,8 @@ PNG_BOMB = """
 import zlib
 def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 head = chunk(b"IHDR", struct.pack(">IIBBBBB", 60000, 60000, 8, 2, 0, 0, 0))
-open(image, "wb").write(b"\\x89PNG\\r\\n\\x1a\\n" + head + chunk(b"IDAT", zlib.compress(bytes(10**7))) + chunk(b"IEND", b""))
+body = chunk(b"IDAT", zlib.compress(bytes(10**7))) + chunk(b"IEND", b"")
+open(image, "wb").write(b"\\x89PNG\\r\\n\\x1a\\n" + head + body)
 """
 
 
@@ -76,7 +77,9 @@ ATTACKS = {
         "invalid",
         "limit of processes",
     ),
-    "setsid daemon": Attack("right()\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0: time.sleep(60)", "pass"),
+    "setsid daemon": Attack(
+        "right()\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0: time.sleep(60)", "pass"
+    ),
     "daemon that keeps the pipe and ignores signals": Attack(
         "right()\nif os.fork() == 0:\n    os.setsid()\n    [signal.signal(n, signal.SIG_IGN) for n in (1, 2, 15)]\n"
         "    time.sleep(60)",
@@ -84,12 +87,12 @@ ATTACKS = {
     ),
     "memory bomb": Attack("x = []\nwhile True: x.append(bytearray(b'x') * 10**7)", "invalid", "limit of memory"),
     "memory bomb in many processes": Attack(
-        "for _ in range(8):\n    if os.fork() == 0:\n        x = bytearray(b'x') * (60 * 10**6); time.sleep(9)\ntime.sleep(9)",
+        "for _ in range(8):\n    if os.fork() == 0:\n        x = bytearray(b'x') * (60 * 10**6); time.sleep(9)\ntime.sleep(9)",  # noqa: E501
         "invalid",
         "limit of memory",
     ),
     "disk filler beside the image": Attack(
-        "for k in range(99):\n    with open(os.path.dirname(image) + f'/{k}', 'wb') as f: f.write(bytes(10**7))\ntime.sleep(9)",
+        "for k in range(99):\n    with open(os.path.dirname(image) + f'/{k}', 'wb') as f: f.write(bytes(10**7))\ntime.sleep(9)",  # noqa: E501
         "invalid",
         "limit of disk",
     ),
@@ -98,7 +101,9 @@ ATTACKS = {
         "",  # of the disk's limit or of the time's, by how fast the disk is
     ),
     "disk filler in tmp": Attack(
-        "try:\n    open('/tmp/x', 'wb').write(bytes(10**8))\nexcept OSError as e: sys.exit(str(e))", "error", "No space left"
+        "try:\n    open('/tmp/x', 'wb').write(bytes(10**8))\nexcept OSError as e: sys.exit(str(e))",
+        "error",
+        "No space left",
     ),
     "disk filler in shared memory": Attack(
         "try:\n    open('/dev/shm/x', 'wb').write(bytes(10**8))\nexcept OSError as e: sys.exit(str(e))",
@@ -138,7 +143,7 @@ ATTACKS = {
         "exit status 1",
     ),
     "reads a golden, the rubric, another submission": Attack(
-        f"hits = subprocess.run(['grep', '-rlsI', '{SECRET[:9]}' + '{SECRET[9:]}', '/home', '/tmp', '/etc', '/var', '/work'],"
+        f"hits = subprocess.run(['grep', '-rlsI', '{MARK[:9]}' + '{MARK[9:]}', '/home', '/tmp', '/etc', '/var', '/work'],"  # noqa: E501
         " capture_output=True, text=True).stdout\nif hits: sys.exit('FOUND ' + hits)\nright()",
         "pass",
     ),
@@ -172,7 +177,9 @@ ATTACKS = {
         "invalid",
         "no image was written",
     ),
-    "terminal escapes": Attack("print('\\x1b]0;owned\\x07\\x1b[31m<script>alert(1)</script>'); sys.exit(1)", "error", "<script>"),
+    "terminal escapes": Attack(
+        "print('\\x1b]0;owned\\x07\\x1b[31m<script>alert(1)</script>'); sys.exit(1)", "error", "<script>"
+    ),
     "races on its output file": Attack(
         "right()\nif os.fork() == 0:\n    os.setsid()\n    while True:\n        try: os.unlink(image)\n"
         "        except OSError: pass\n        try: os.symlink('/etc/passwd', image)\n        except OSError: pass",
@@ -198,7 +205,7 @@ def graded(tmp_path: Path, places: Path) -> Callable[..., Record]:
         out = tmp_path / "out"
         for name in ("records", "students"):
             (out / name).mkdir(parents=True)
-        (tmp_path / "rubric.toml").write_text(f"# {SECRET}", "utf-8")
+        (tmp_path / "rubric.toml").write_text(f"# {MARK}", "utf-8")
         before = set(descendants(os.getpid()))
         begin = time.monotonic()
         record = grade(Asked(RUBRIC, 3, out, Jail(RUBRIC.limits)), submission or found(tmp_path / "class")[0])
@@ -237,15 +244,17 @@ def test_an_attack_gets_its_verdict_and_leaves_nothing(
     if attack.verdict:
         assert (first.verdict, attack.message in first.why) == (attack.verdict, True), first
     told = results.read(tmp_path / "out" / "students" / record.slug)
-    assert SECRET not in told.model_dump_json()
+    assert MARK not in told.model_dump_json()
     assert "root:x:" not in told.model_dump_json()
 
 
 def test_a_tracer_that_looks_around_sees_only_its_own(
     graded: Callable[..., Record], handed_in: Callable[..., Path], tmp_path: Path
 ) -> None:
-    handed_in("print('ROOT', sorted(os.listdir('/'))); print('TMP', len(os.listdir('/tmp'))); print('PS', "
-              "len([p for p in os.listdir('/proc') if p.isdigit()])); print('ENV', sorted(os.environ)); sys.exit(1)")
+    handed_in(
+        "print('ROOT', sorted(os.listdir('/'))); print('TMP', len(os.listdir('/tmp'))); print('PS', "
+        "len([p for p in os.listdir('/proc') if p.isdigit()])); print('ENV', sorted(os.environ)); sys.exit(1)"
+    )
     record = graded()
     process = results.read(tmp_path / "out" / "students" / record.slug).verdicts[0].process
     assert process is not None
@@ -262,16 +271,17 @@ BUILDS = {
     "build that fills the disk": ("while :; do head -c 9000000 /dev/zero > $RANDOM$$.$((n=n+1)); done", "build"),
     "build that edits the suite": ("touch /usr/owned /root/owned /etc/owned", "build"),
     "build that preloads": ("export LD_PRELOAD=$PWD/x.so; echo LD_PRELOAD=$PWD/x.so > /tmp/profile; exit 1", "build"),
-    "build that replaces its manifest": ("printf '[tracer]\\nname=\"x\"\\nrender=[\"true\"]\\n' > raycheck.toml", "graded"),
+    "build that replaces its manifest": (
+        'printf \'[tracer]\\nname="x"\\nrender=["true"]\\n\' > raycheck.toml',
+        "graded",
+    ),
     "build that leaves links": ("ln -s /etc/passwd tracer; ln -sf / root", "graded"),
     "build that locks its folder": ("mkdir -p locked/in; chmod 000 locked", "graded"),
 }
 
 
 @pytest.mark.parametrize("name", BUILDS)
-def test_a_hostile_build_is_held_too(
-    graded: Callable[..., Record], handed_in: Callable[..., Path], name: str
-) -> None:
+def test_a_hostile_build_is_held_too(graded: Callable[..., Record], handed_in: Callable[..., Path], name: str) -> None:
     command, outcome = BUILDS[name]
     folder = handed_in("right()", 'build = ["make"]')
     (folder / "Makefile").write_text("all:\n\t@" + command.replace("$", "$$") + "\n", "utf-8")
@@ -320,9 +330,7 @@ def test_a_submission_that_is_a_link_is_refused(
     assert graded(found(tmp_path / "class")[0]).outcome == "refused"
 
 
-def test_canned_pictures_earn_nothing(
-    graded: Callable[..., Record], handed_in: Callable[..., Path]
-) -> None:
+def test_canned_pictures_earn_nothing(graded: Callable[..., Record], handed_in: Callable[..., Path]) -> None:
     # Right at the catalogue's own size, whatever is asked
     handed_in("if (width, height) != (160, 120): width, height = 160, 120\nright()")
     record = graded()
