@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -17,6 +18,7 @@ class Room(Protocol):
         """A hold in which the command sees these files and folders, and may change what is in `write`."""
 
 
+@dataclass(frozen=True)
 class _Open:
     """No walls: the program has the rights of its caller."""
 

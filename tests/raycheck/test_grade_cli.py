@@ -77,6 +77,10 @@ def test_without_a_sandbox_it_refuses_unless_the_code_is_trusted(
     assert raycheck("check", team / "alice", "--sandbox").code == 3
     told = graded(raycheck, team, "--i-trust-this-code")
     assert (told.code, "with your rights" in told.err) == (0, True)
+    record = team.parent / "out" / "records" / "alice.json"
+    before = record.stat().st_mtime_ns
+    assert graded(raycheck, team, "--i-trust-this-code").code == 0
+    assert record.stat().st_mtime_ns == before
 
 
 REFUSED = {
