@@ -19,7 +19,7 @@ from scenes.catalogue import ladder
 
 ROOT = Path(raycheck.cli.__file__).parents[1]
 ENTRY = [sys.executable, "-P", "-c", "from raycheck.cli import entry; entry()"]
-COMMANDS = ("demo", "check", "smoke", "render", "golden", "compare", "scenes", "report", "doctor")
+COMMANDS = ("demo", "check", "smoke", "render", "golden", "compare", "scenes", "grade", "init", "report", "doctor")
 
 Raycheck = Callable[..., Any]
 
