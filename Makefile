@@ -27,6 +27,7 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/laws_table.py
 	$(BIN)/python -P benchmarks/peers.py
 	$(BIN)/python -P benchmarks/stochastic_gate.py
+	$(BIN)/python -P benchmarks/grading.py
 
 setup: $(READY)
 
@@ -35,13 +36,13 @@ $(READY): constraints.txt pyproject.toml tools/system-packages
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -r tools/build-requirements.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt \
-	  --no-build-isolation -e ".[peers,dev]"
+	  --no-build-isolation -e ".[cluster,peers,dev]"
 	touch $@
 
 # Pins anew: needs uv. Writes name==version lines only.
 constraints:
 	uv pip compile --quiet --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url \
-	  --no-emit-find-links --extra peers --extra dev pyproject.toml tools/build-requirements.txt -o constraints.txt
+	  --no-emit-find-links --extra cluster --extra peers --extra dev --extra cluster pyproject.toml tools/build-requirements.txt -o constraints.txt
 
 # The published schemas, from the models.
 schemas: $(READY)

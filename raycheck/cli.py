@@ -63,6 +63,9 @@ def parser() -> Parser:
     check.add_argument("--seed", type=int, default=0, metavar="N", help="handed to the tracer as {seed} (%(default)s)")
     check.add_argument("--known", metavar="FILE", help="TOML list of known failures: [[known]] check, reason, url")
     check.add_argument("--no-block", action="store_true", help="ask every rung, even where one it builds on failed")
+    check.add_argument(
+        "--sandbox", action="store_true", help="build and run a copy of the folder where it reaches nothing"
+    )
 
     smoke = _add(
         commands,
@@ -127,6 +130,26 @@ def parser() -> Parser:
     chart.add_argument("--precision", choices=("float32", "float64"), help="what a Python object computes in (float32)")
     chart.add_argument("--out", default="raycheck-chart", metavar="DIR", help="where the report goes (%(default)s)")
     chart.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (%(default)s)")
+
+    grade = _add(commands, "grade", "grade a class of submissions by a rubric, in a sandbox")
+    grade.add_argument(
+        "submissions", nargs="?", metavar="SUBMISSIONS", help="a folder with one folder or archive a submission"
+    )
+    grade.add_argument("--rubric", metavar="FILE", help="TOML: groups of rungs and their points (one ships)")
+    grade.add_argument("--out", default="raycheck-grades", metavar="DIR", help="where all results go (%(default)s)")
+    grade.add_argument("--jobs", type=int, default=1, metavar="N", help="submissions at a time (%(default)s)")
+    grade.add_argument("--cluster", metavar="ADDRESS", help="grade on a Dask cluster instead, tcp://HOST:PORT")
+    grade.add_argument("--seed", type=int, metavar="N", help="of picture size and hidden scenes (drawn once per DIR)")
+    grade.add_argument("--adjust", metavar="FILE", help="CSV of points by hand: submission, points, reason")
+    grade.add_argument("--only", metavar="A,B", help="only these submissions")
+    grade.add_argument("--rerun-failed", action="store_true", help="ask those again that were not graded or too slow")
+    grade.add_argument("--explain", metavar="NAME", help="grade nothing; say how this score came about")
+    grade.add_argument("--gradescope-bundle", metavar="ZIP", help="grade nothing; write an autograder of this rubric")
+    grade.add_argument("--i-trust-this-code", action="store_true", help="run the submissions without a sandbox")
+
+    init = _add(commands, "init", "write a tracer to begin with: all but the formulas is done")
+    init.add_argument("language", choices=("cpp", "python", "rust", "go", "java", "javascript"), help="its language")
+    init.add_argument("folder", metavar="DIR", help="a new or empty folder")
 
     report = _add(commands, "report", "write a report again from its results")
     report.add_argument("folder", metavar="DIR", help="a folder that holds results.json")

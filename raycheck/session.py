@@ -89,7 +89,7 @@ def _results(
 ) -> results.Results:
     return results.Results(
         suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
-        subject=_described(order.subject),
+        subject=described(order.subject),
         machine=machine(),
         started=started,
         command=order.command,
@@ -155,7 +155,7 @@ def _make_room(folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def _described(subject: Subject) -> results.Subject:
+def described(subject: Subject) -> results.Subject:
     return results.Subject(
         name=subject.name,
         spec=subject.spec,

@@ -27,6 +27,16 @@ def count(n: int) -> str:
     return f"{n:,}"
 
 
+def points(x: float) -> str:
+    """Points of a grade: as many digits as they have."""
+    return f"{x:g}"
+
+
+def signed(x: float) -> str:
+    """Points added or taken."""
+    return f"{x:+g}"
+
+
 def share(part: int, whole: int) -> str:
     """Part of whole in per cent; a dash where there is no whole."""
     return f"{100 * part / whole:.3g} %" if whole else "–"

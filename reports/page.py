@@ -67,13 +67,13 @@ def write(results: Results, folder: Path) -> Path:
     return path
 
 
-def render(results: Results, folder: Path) -> str:
-    """The page's text; the pictures are read from folder."""
+def render(results: Results, folder: Path, template: str = FILE, **more: object) -> str:
+    """The page's text; the pictures are read from folder. A template that extends this page's may be told more."""
     clean = plain.results(results)
     entries = _entries(clean, folder)
     return (
-        _environment()
-        .get_template(FILE)
+        environment()
+        .get_template(template)
         .render(
             results=clean,
             sentence=conclusion.sentence(clean),
@@ -84,7 +84,7 @@ def render(results: Results, folder: Path) -> str:
             open=_with(entries, *conclusion.OPEN),
             passed=_with(entries, "pass"),
             anchors={entry.verdict.check: entry.anchor for entry in reversed(entries)},
-            policy=_policy(),
+            **({"policy": policy()} | more),
         )
     )
 
@@ -118,7 +118,8 @@ def _anchor(index: int, check: str) -> str:
 
 
 @cache
-def _environment() -> Environment:
+def environment() -> Environment:
+    """Templates that escape everything and miss nothing."""
     environment = Environment(
         loader=PackageLoader("reports"),
         autoescape=True,
@@ -128,21 +129,22 @@ def _environment() -> Environment:
         keep_trailing_newline=False,
     )
     shown = ("value", "measure", "count", "share", "seconds", "excess", "off", "unit", "doubtful", "kinds", "shell")
-    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide")}
+    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide", "points", "signed")}
     environment.globals["symbols"] = SYMBOLS
     return environment
 
 
 @cache
-def _policy() -> str:
-    """The page's Content-Security-Policy."""
+def policy(styles: tuple[str, ...] = ("page.css",), script: str = "page.js") -> str:
+    """A page's Content-Security-Policy."""
+    told = " ".join(f"'{_hash(style)}'" for style in styles)
     return (
-        f"default-src 'none'; img-src data:; style-src '{_hash('page.css')}'; script-src '{_hash('page.js')}'; "
+        f"default-src 'none'; img-src data:; style-src {told}; script-src '{_hash(script)}'; "
         "base-uri 'none'; form-action 'none'"
     )
 
 
 def _hash(name: str) -> str:
     """The source expression for a file that the page includes as it stands."""
-    body = _environment().get_template(name).render()
+    body = environment().get_template(name).render()
     return f"sha256-{b64encode(sha256(body.encode()).digest()).decode()}"

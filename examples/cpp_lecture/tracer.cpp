@@ -119,19 +119,24 @@ const real INFINITE = std::numeric_limits<real>::infinity();
 
 // Ray Vector Calculation
 Vec ray(const Scene& s, int i, int j) {
+    // [open] the direction through pixel (i, j), unit: (void)i, (void)j; return unit(s.forward);
     real X = -1 + 2 * (i + s.sx) / s.width;
     real Y = 1 - 2 * (j + s.sy) / s.height;
     return unit(s.forward + s.right * X + s.up * Y);
+    // [close]
 }
 
 // Example of Sphere Intersection; a plane from normal.p = offset. Infinite: no hit
 real distance(const Object& obj, Vec o, Vec v) {
     if (!obj.sphere) {
+        // [open] the distance to a plane: return INFINITE;
         real toward = dot(obj.v, v);
         if (toward == 0) return INFINITE;
         real t = (obj.s - dot(obj.v, o)) / toward;
         return t > EPS ? t : INFINITE;
+        // [close]
     }
+    // [open] the smallest distance beyond EPS to a sphere: (void)o, (void)v, (void)EPS; return INFINITE;
     Vec b = o - obj.v;
     real bv = dot(b, v);
     real D = bv * bv - (dot(b, b) - obj.s * obj.s);
@@ -140,25 +145,37 @@ real distance(const Object& obj, Vec o, Vec v) {
     if (-bv - root > EPS) return -bv - root;
     if (-bv + root > EPS) return -bv + root;
     return INFINITE;
+    // [close]
 }
 
-Vec normal(const Object& obj, Vec p) { return obj.sphere ? unit(p - obj.v) : unit(obj.v); }
+Vec normal(const Object& obj, Vec p) {
+    // [open] the outward unit normal at p: (void)p; return unit(obj.v);
+    return obj.sphere ? unit(p - obj.v) : unit(obj.v);
+    // [close]
+}
 
 // Math of Reflection Vector
-Vec reflection(Vec i, Vec n) { return n * (2 * dot(i, n)) - i; }
+Vec reflection(Vec i, Vec n) {
+    // [open] the mirror direction of i about n: (void)n; return i;
+    return n * (2 * dot(i, n)) - i;
+    // [close]
+}
 
 // Refraction Vector Calculation, entering and leaving; false under total internal reflection
 bool refraction(Vec v, Vec n, bool leaving, real index, Vec& t) {
+    // [open] Snell's law; n faces the ray: (void)v, (void)n, (void)leaving, (void)index, (void)t; return false;
     Vec p = v - n * dot(v, n);
     Vec s = leaving ? p * index : p * (1 / index);
     real sin2 = dot(s, s);
     if (sin2 >= 1) return false;
     t = unit(s - n * std::sqrt(1 - sin2));
     return true;
+    // [close]
 }
 
 // Reflected share at a dielectric (only for scenes that ask for it)
 real fresnel(Vec v, Vec n, bool leaving, real index) {
+    // [open] the exact dielectric formula: (void)v, (void)n, (void)leaving, (void)index; return 1;
     real n1 = leaving ? index : 1, n2 = leaving ? 1 : index;
     real c1 = -dot(v, n);
     real sin2 = (n1 / n2) * (n1 / n2) * (1 - c1 * c1);
@@ -167,17 +184,21 @@ real fresnel(Vec v, Vec n, bool leaving, real index) {
     real rs = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
     real rp = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
     return (rs * rs + rp * rp) / 2;
+    // [close]
 }
 
 bool shadowed(const Scene& s, Vec p, Vec i, real light) {
+    // [open] does anything stand between p and the light: (void)s, (void)p, (void)i, (void)light; return false;
     for (const Object& obj : s.objects)
         if (distance(obj, p, i) < light) return true;
     return false;
+    // [close]
 }
 
 // Phong Effect
 Vec local_colour(const Scene& s, const Material& m, Vec p, Vec n, Vec v) {
     Vec c = m.ambient;
+    // [open] add each light's diffuse and specular part to c: (void)s, (void)p, (void)n, (void)v, (void)shadowed;
     for (const Light& l : s.lights) {
         Vec w = l.point ? l.v - p : l.v;
         Vec i = unit(w);
@@ -190,6 +211,7 @@ Vec local_colour(const Scene& s, const Material& m, Vec p, Vec n, Vec v) {
         gloss = gloss > 0 ? std::pow(gloss, real(m.shininess)) : 0;
         c = c + l.color * a * (m.diffuse * cosine + m.specular * gloss);
     }
+    // [close]
     return c;
 }
 
@@ -197,6 +219,7 @@ Vec local_colour(const Scene& s, const Material& m, Vec p, Vec n, Vec v) {
 Vec find_rgb(const Scene& s, Vec o, Vec v, int generation) {
     real fmin = INFINITE;
     const Object* nearest = nullptr;
+    // [open] find the nearest object and its distance fmin: (void)o, (void)distance;
     for (const Object& obj : s.objects) {
         real f = distance(obj, o, v);
         if (f < fmin) {
@@ -204,6 +227,7 @@ Vec find_rgb(const Scene& s, Vec o, Vec v, int generation) {
             nearest = &obj;
         }
     }
+    // [close]
     if (!nearest) return s.background;
 
     const Material& m = nearest->material;
@@ -214,6 +238,7 @@ Vec find_rgb(const Scene& s, Vec o, Vec v, int generation) {
     Vec ret = local_colour(s, m, p, n, v);
     if (generation == s.depth) return ret;
 
+    // [open] add the mirrored and the refracted ray's colours: (void)fresnel, (void)refraction, (void)reflection;
     real F = s.fresnel ? fresnel(v, n, leaving, m.index) : 0;
     real keep = s.fresnel ? F : 1, pass = s.fresnel ? 1 - F : 1;
     Vec t;
@@ -221,6 +246,7 @@ Vec find_rgb(const Scene& s, Vec o, Vec v, int generation) {
         ret = ret + m.reflect * keep * find_rgb(s, p, reflection(-v, n), generation + 1);
     if (!black(m.transmit) && refraction(v, n, leaving, m.index, t))
         ret = ret + m.transmit * pass * find_rgb(s, p, t, generation + 1);
+    // [close]
     return ret;
 }
 

@@ -11,12 +11,18 @@ from raycheck.commands.options import command_line, size_of, subject_of
 from raycheck.errors import UsageError
 from raycheck.laws import LawPlan, all_laws, check_names, chosen
 from raycheck.laws.plan import AnyLaw
+from raycheck.subjects import Subject, jailed
+from raycheck.workspace import workspace
 from scenes.catalogue import ladder
 
 
 def run(options: Namespace) -> int:
     """Check, tell, and return the exit code."""
-    subject = subject_of(options)
+    with workspace() as folder:
+        return _checked(options, jailed(subject_of(options), folder) if options.sandbox else subject_of(options))
+
+
+def _checked(options: Namespace, subject: Subject) -> int:
     scenes = _names(options.scenes, "--scenes", "names from `raycheck scenes`, separated by commas")
     laws = _names(options.laws, "--laws", "names from docs/laws.md, separated by commas")
     if laws is not None and scenes is None:
@@ -84,4 +90,6 @@ def repeat_line(options: Namespace, asked: str = session.ONE_SCENE) -> str:
         words += ["--known", options.known]
     if options.explore and asked == session.ONE_LAW:
         words += ["--explore", str(options.explore)]
+    if options.sandbox:
+        words.append("--sandbox")
     return session.repeat_line(words, ["--", *options.tracer] if options.tracer is not None else [], asked)

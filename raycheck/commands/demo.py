@@ -8,7 +8,8 @@ from argparse import Namespace
 from pathlib import Path
 
 from raycheck import session
-from raycheck.errors import BROKEN, CONFORMS, DIFFERS, StartError
+from raycheck.errors import BROKEN, CONFORMS, DIFFERS
+from raycheck.examples import examples
 from raycheck.known import Known
 from raycheck.laws import LawPlan, all_laws
 from raycheck.subjects import attach
@@ -52,12 +53,3 @@ def _copied(name: str, out: Path) -> Path:
     folder = out / "tracers" / name
     shutil.copytree(examples() / name, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("tracer"))
     return folder
-
-
-def examples() -> Path:
-    """The folder of example tracers: in the package, or beside it in a checkout."""
-    here = Path(__file__).resolve().parents[1]
-    for folder in (here / "examples", here.parent / "examples"):
-        if folder.is_dir():
-            return folder
-    raise StartError("the example tracers are not installed", "install raycheck from its wheel or a checkout")

@@ -40,7 +40,7 @@ def parts() -> Iterator[Part]:
     yield Part("libLLVM", path, f"no DrJit lanes, NumPy serves (unfit: {tried})", "apt-get install libllvm19")
     programs = (
         ("g++", "`raycheck demo` cannot build its examples", "apt-get install g++ make"),
-        ("bwrap", "nothing yet: it is for the sandbox to come", "apt-get install bubblewrap"),
+        ("bwrap", "no sandbox: `grade` and `check --sandbox` refuse", "apt-get install bubblewrap"),
         ("chromium", "the report's browser test is skipped", "apt-get install chromium"),
         ("povray", "POV-Ray cannot be a peer", "apt-get install povray"),
     )

@@ -36,10 +36,12 @@ class BrokenOffError(NoAnswerError):
 class Channel:
     """One running process."""
 
-    def __init__(self, command: Sequence[str], folder: Path, patience: float) -> None:
+    def __init__(
+        self, command: Sequence[str], folder: Path, patience: float, hold: process.Hold = process.GROUP
+    ) -> None:
         """Start it; patience: seconds for each answer. Raise OSError if it cannot start."""
-        self.patience = patience
-        self.child = process.start(command, folder, FILES)
+        self.patience, self.hold = patience, hold
+        self.child = process.start(command, folder, FILES, hold)
         into, out, err = (
             stream.fileno() for stream in (self.child.stdin, self.child.stdout, self.child.stderr) if stream
         )
@@ -51,7 +53,7 @@ class Channel:
 
     def close(self) -> None:
         """End the process."""
-        process.stop(self.child)
+        process.stop(self.child, self.hold)
 
     def exchange(self, requests: bytes, count: int) -> list[bytes]:
         """The answers to `count` lines of requests; raise BrokenOffError where they do not come."""

@@ -14,6 +14,7 @@ from oracles.laws.cases import Question
 from raycheck.probes import wire
 from raycheck.probes.channel import BrokenOffError, Channel
 from raycheck.probes.prober import Reals
+from raycheck.sandbox.room import OPEN, Room
 from raycheck.workspace import workspace
 from reference_tracer.operations import ANSWERS
 from scenes.model import Scene
@@ -29,17 +30,25 @@ class ProbeClient:
     """One probe command in its tracer's folder."""
 
     def __init__(
-        self, command: tuple[str, ...], folder: Path, shown: str, precision: str, patience: float = PATIENCE
+        self,
+        command: tuple[str, ...],
+        folder: Path,
+        shown: str,
+        precision: str,
+        patience: float = PATIENCE,
+        room: Room = OPEN,
     ) -> None:
-        """Shown: the folder as the user named it; precision: what the manifest says."""
+        """Shown: the folder as the user named it; precision: what the manifest says; room: where it runs."""
         self.command, self.folder, self.shown = command, folder, shown
         self.precision, self.patience = precision, patience
         self.starts = 0
         self.channel: Channel | None = None
         self.scene: Scene | None = None
         self.operations: frozenset[str] = frozenset()
+        self.room = room
+        self.held = ExitStack()
         self.files = ExitStack()
-        self.room: Path | None = None
+        self.papers: Path | None = None
 
     def open(self) -> frozenset[str]:
         """Start and greet it, if it is not running; the operations it answers."""
@@ -47,8 +56,12 @@ class ProbeClient:
             if self.starts > RESTARTS:
                 raise NoAnswerError("error", f"the probe failed {self.starts} times and is not started again")
             self.starts += 1
+            if self.papers is None:
+                self.papers = self.files.enter_context(workspace())
+                self.papers.chmod(0o755)  # a jail's user is another
             try:
-                self.channel = Channel(self.command, self.folder, self.patience)
+                hold = self.held.enter_context(self.room.hold(read=(self.folder, self.papers), write=()))
+                self.channel = Channel(self.command, self.folder, self.patience, hold)
             except OSError as error:
                 raise NoAnswerError(
                     "error",
@@ -61,7 +74,7 @@ class ProbeClient:
         """End the process and remove the files made for it."""
         self._drop()
         self.files.close()
-        self.room = None
+        self.papers = None
 
     def __call__(self, operation: str, arguments: Reals, scene: Scene | None = None) -> Reals:
         """Answers (n, m) to arguments (n, k), as the tracer's precision holds them."""
@@ -104,9 +117,9 @@ class ProbeClient:
 
     def _show(self, scene: Scene) -> None:
         """Hand over the scene that the next questions are about."""
-        if self.room is None:
-            self.room = self.files.enter_context(workspace())
-        path = self.room / f"{scene.name}.txt"
+        if self.papers is None:
+            raise NoAnswerError("error", "the probe was not opened")
+        path = self.papers / f"{scene.name}.txt"
         path.write_text(to_text(scene), "utf-8")
         line = self._say(f"scene {path}\n".encode(), 1)[0]
         if line.strip() == b"unsupported":
@@ -124,6 +137,7 @@ class ProbeClient:
     def _drop(self) -> None:
         if self.channel is not None:
             self.channel.close()
+        self.held.close()
         self.channel, self.scene = None, None
 
     def line(self, questions: tuple[Question, ...], scenes: Path) -> str:

@@ -14,7 +14,9 @@ def prober_of(subject: Subject) -> Prober | None:
     """How the subject answers formula by formula; None where it offers no way."""
     match subject:
         case CommandSubject() if subject.manifest.probe is not None:
-            return ProbeClient(subject.manifest.probe, subject.folder, subject.spec, subject.precision)
+            return ProbeClient(
+                subject.manifest.probe, subject.folder, subject.spec, subject.precision, room=subject.room
+            )
         case ReferenceSubject():
             return ReferenceProber(subject.arithmetic, subject.bits)
         case PythonSubject():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ from pydantic import ValidationError
 from raycheck import manifest
 from raycheck.errors import UsageError
 from raycheck.manifest import DialectTable, Manifest
+from raycheck.sandbox import Jail
+from raycheck.sandbox.intake import copy
 from raycheck.subjects.command import CommandSubject
 from raycheck.subjects.images import ImagesSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
@@ -64,3 +67,12 @@ def dialect_of(words: dict[str, str]) -> DialectTable:
         return DialectTable.model_validate(values)
     except ValidationError as error:
         raise UsageError(f"--dialect: {manifest.explain(error)}") from None
+
+
+def jailed(subject: Subject, folder: Path) -> Subject:
+    """The same tracer as a copy in this folder, built and run in a jail."""
+    if not isinstance(subject, CommandSubject) or not subject.spec:
+        raise UsageError("--sandbox needs a folder with raycheck.toml", "what is not one folder cannot be locked in")
+    room = Jail()
+    copy(subject.folder, folder / "tracer")
+    return replace(subject, folder=folder / "tracer", room=room)

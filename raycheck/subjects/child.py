@@ -84,7 +84,7 @@ class Child:
         except OSError as error:
             raise StartError(f"{self.module} cannot be started: {error.strerror}") from None
         self._end = weakref.finalize(self, _finish, running, printed)
-        process.limit(running.pid, FILE_LIMIT)
+        process.GROUP.started(running.pid, FILE_LIMIT)
         return running
 
     def _exchange(self, running: subprocess.Popen[bytes], request: str, deadline: float) -> str | None:

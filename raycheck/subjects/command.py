@@ -11,6 +11,7 @@ from oracles.verdict import Process
 from raycheck import process
 from raycheck.errors import StartError, UsageError
 from raycheck.manifest import Manifest
+from raycheck.sandbox.room import OPEN, Room
 from raycheck.subjects.subject import Attempt, Problem
 from raycheck.workspace import workspace
 from scenes.json_form import to_json
@@ -23,11 +24,13 @@ BUILD_FILES = 2**31
 
 @dataclass
 class CommandSubject:
-    """A manifest and the folder it is in; commands run there."""
+    """A manifest and the folder it is in; commands run there, in the room that they are given."""
 
     folder: Path
     manifest: Manifest
     spec: str
+    room: Room = OPEN
+    build_timeout: float = BUILD_TIMEOUT
     in_process: bool = False
 
     def __post_init__(self) -> None:
@@ -49,7 +52,8 @@ class CommandSubject:
             return
         command = " ".join(self.manifest.build)
         try:
-            ended = process.run(self.manifest.build, self.folder, BUILD_TIMEOUT, BUILD_FILES)
+            with self.room.hold(read=(), write=(self.folder,)) as hold:
+                ended = process.run(self.manifest.build, self.folder, self.build_timeout, BUILD_FILES, hold=hold)
         except OSError as error:
             raise StartError(f"build command {command!r} cannot run: {error.strerror}", "install it") from None
         if (ended.how, ended.code) != ("exited", 0):
@@ -59,9 +63,11 @@ class CommandSubject:
         """Write the scene, run the program, read the image; the files live in a folder of their own."""
         with workspace() as folder:
             scene_file = folder / f"{scene.name}.{'txt' if self.scene_form == 'text' else 'json'}"
-            image_file = folder / f"{scene.name}.{self.image_form}"
+            image_file = folder / "out" / f"{scene.name}.{self.image_form}"
+            image_file.parent.mkdir()
             scene_file.write_text(to_text(scene) if self.scene_form == "text" else to_json(scene), "utf-8")
-            return self._run(scene, self.arguments(scene, scene_file, image_file, seed), image_file)
+            with self.room.hold(read=(self.folder, scene_file), write=(image_file.parent,)) as hold:
+                return self._run(scene, self.arguments(scene, scene_file, image_file, seed), image_file, hold)
 
     def arguments(self, scene: Scene, scene_file: Path, image_file: Path, seed: int) -> list[str]:
         """The command's words with the placeholders filled in."""
@@ -80,16 +86,18 @@ class CommandSubject:
             words.append(word)
         return words
 
-    def _run(self, scene: Scene, words: list[str], image_file: Path) -> Attempt:
+    def _run(self, scene: Scene, words: list[str], image_file: Path, hold: process.Hold) -> Attempt:
         width, height = scene.image.width, scene.image.height
         try:
-            ended = process.run(words, self.folder, self.manifest.timeout, 2**24 + 64 * width * height)
+            limit = 2**24 + 64 * width * height
+            ended = process.run(words, self.folder, self.manifest.timeout, limit, hold=hold)
         except OSError as error:
             raise StartError(
                 f"{words[0]!r} cannot be started: {error.strerror}", "check the path, and that it is executable"
             ) from None
         # The folder has another name each time: without it, equal runs tell equal stories
-        ended = replace(ended, tail=ended.tail.replace(f"{image_file.parent}{os.sep}", ""))
+        for folder in (image_file.parent, image_file.parent.parent):
+            ended = replace(ended, tail=ended.tail.replace(f"{folder}{os.sep}", ""))
         evidence = Process(
             command=self.manifest.render, status=ended.status, seconds=ended.seconds, output_tail=ended.tail
         )
@@ -107,6 +115,8 @@ class CommandSubject:
                 return "timeout", f"no picture within {self.manifest.timeout:g} s"
             case "flood":
                 return "invalid", f"printed more than {process.OUTPUT_LIMIT // 2**20} MiB and was stopped"
+            case "memory" | "processes" | "disk":
+                return "invalid", f"used more than its limit of {ended.how} and was stopped"
             case "signal":
                 return "crash", f"the program was killed by {process.signal_name(ended.code)}"
             case _ if ended.code != 0:

@@ -76,7 +76,7 @@ def manifest(tmp_path: Path) -> Callable[..., Path]:
 
     def write(text: str, name: str = "team") -> Path:
         folder = tmp_path / name
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         (folder / "raycheck.toml").write_text(text, "utf-8")
         return folder
 

@@ -30,6 +30,8 @@ COMMANDS = (
     "scenes",
     "stability",
     "chart",
+    "grade",
+    "init",
     "report",
     "doctor",
 )

@@ -225,7 +225,7 @@ def test_only_the_end_of_long_output_is_kept() -> None:
 
 
 def test_an_interrupt_while_we_wait_ends_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(child: object, deadline: float) -> tuple[str, bytes]:
+    def interrupted(child: object, deadline: float, hold: object) -> tuple[str, bytes]:
         pids.append(child.pid)  # type: ignore[attr-defined]
         raise KeyboardInterrupt
 

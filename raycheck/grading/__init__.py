@@ -1,0 +1,1 @@
+"""Grading a class: submissions in, scores and reports out."""
