@@ -100,7 +100,7 @@ SLIPS: Mapping[str, Edits] = {
 """By the word of oracles.conventions."""
 
 FAULTS: Mapping[str, Edits] = {
-    "reflection 2n - i": (("return n * (2 * dot(i, n)) - i; }", "return unit(n * 2 - i); }"),),
+    "reflection 2n - i": (("return n * (2 * dot(i, n)) - i;", "return unit(n * 2 - i);"),),
     "ratio not inverted on leaving": (("leaving ? p * index : p * (1 / index)", "p * (1 / index)"),),
     "shadows pass the light": ((_SHADOW, _SHADOW.replace("light", "INFINITE")),),
     "light vector not unit": (("Vec i = unit(w);", "Vec i = w;"),),

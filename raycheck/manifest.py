@@ -17,6 +17,8 @@ MAX_BYTES = 2**16
 Word = Annotated[str, Field(pattern=r"^[^\x00]*$")]
 Words = Annotated[tuple[Word, ...], Field(min_length=1, max_length=100)]
 FEATURES = ("plane", "shadow", "reflect", "refract", "fresnel")
+LECTURE: tuple[Literal["plane", "shadow", "reflect", "refract"], ...] = ("plane", "shadow", "reflect", "refract")
+"""What the lecture teaches; Fresnel's shares are for those who say that they have them."""
 
 
 class Frozen(BaseModel):
@@ -57,7 +59,7 @@ class Manifest(Frozen):
     scene: Literal["text", "json"] = "text"
     image: Literal["pfm", "exr", "npy", "ppm", "png"] = "pfm"
     precision: Literal["float32", "float64"] = "float32"
-    features: tuple[Literal["plane", "shadow", "reflect", "refract", "fresnel"], ...] | None = None
+    features: tuple[Literal["plane", "shadow", "reflect", "refract", "fresnel"], ...] = LECTURE
     stochastic: bool = False
     spp: Annotated[int, Field(ge=1, le=2**20, strict=True)] = 64
     timeout: Annotated[float, Field(gt=0, le=3600, strict=True)] = 30.0

@@ -15,6 +15,7 @@ from oracles.images import ENDINGS
 from raycheck.cli import parser
 from raycheck.commands.options import subject_of
 from raycheck.manifest import FEATURES, Manifest
+from reference_tracer.dialects import SCENE_MODEL
 from scenes.catalogue import ladder
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -137,13 +138,17 @@ def test_the_readmes_manifest_is_a_manifest() -> None:
 
 
 def test_the_table_of_manifest_keys_is_complete_and_its_defaults_are_right() -> None:
-    text = (ROOT / "docs" / "attaching.md").read_text("utf-8")
+    text = (ROOT / "docs" / "attaching.md").read_text("utf-8").partition("## Dialects")[0]
     rows = dict(re.findall(r"^\| `(\w+)` \|.*\| ([^|]+) \|$", text, re.MULTILINE))
     assert set(rows) == set(Manifest.model_fields)
     for name, told in rows.items():
         field = Manifest.model_fields[name]
         if field.is_required():
             assert told == "needed"
+        elif name == "dialect":
+            assert (told, field.default.choices()) == ("the scene model's", SCENE_MODEL)
+        elif name == "features":
+            assert (told, set(FEATURES) - set(field.default)) == ("all but `fresnel`", {"fresnel"})
         elif field.default is None:
             assert told in ("none", "all")
         else:

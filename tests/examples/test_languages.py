@@ -50,14 +50,14 @@ def test_an_example_passes_every_rung_of_the_ladder(
 ) -> None:
     found = checked(example(language), tmp_path / "out")
     assert {v.check: v.message for v in found.verdicts if v.verdict != "pass"} == {}
-    assert len(found.verdicts) == len(ladder())
+    assert sum(v.check.startswith("image/") for v in found.verdicts) == len(ladder())
 
 
 @needs_its_tool
 def test_a_skeleton_builds_runs_and_fails_from_the_second_rung_on(tmp_path: Path, language: str) -> None:
     assert main(["init", language, str(tmp_path / "mine")]) == 0
     found = checked(tmp_path / "mine", tmp_path / "out")
-    words = {v.check: v.verdict for v in found.verdicts}
+    words = {v.check: v.verdict for v in found.verdicts if v.check.startswith("image/")}
     assert words["image/background"] == "pass"
     assert words["image/headlight-plane"] == words["image/headlight-sphere"] == "fail"
     assert set(list(words.values())[3:]) == {"blocked"}

@@ -28,8 +28,8 @@ from .conftest import Told
 Check = Callable[..., results.Results]
 needs_mitsuba = pytest.mark.skipif(find_spec("mitsuba") is None, reason="Mitsuba is not installed")
 needs_povray = pytest.mark.skipif(shutil.which("povray") is None, reason="POV-Ray is not installed")
-HANDFUL = "background,plane-scaled-normal,shadow-hard,phong-100,attenuation-inverse,mirror-perfect,glass-sphere"
-OFFSET = "shadow-touching,refract-plane,under-water,inside-glass,lecture-final"
+HANDFUL = "background,plane-scaled-normal,shadow-hard,phong-100,attenuation-inverse,invisible-sphere,strays"
+OFFSET = "shadow-touching,refract-plane,under-water,inside-glass,lecture-final,mirror-perfect,glass-sphere"
 
 
 def variants() -> list[str]:

@@ -19,6 +19,7 @@ from scenes.catalogue import ladder, rung
 Attached = Callable[..., Path]
 Check = Callable[..., Results]
 SMALL = ("--size", "16x12")
+EVERYTHING = 'features = ["plane", "shadow", "reflect", "refract", "fresnel"]'
 BACKGROUND_ONLY = """
 with open(image, "wb") as f:
     f.write(b"PF\\n%d %d\\n-1.0\\n" % (width, height))
@@ -38,7 +39,7 @@ def words_of(found: Results) -> dict[str, str]:
 def test_a_rung_that_fails_blocks_what_builds_on_it_and_is_named_as_the_blocker(
     attached: Attached, check: Check
 ) -> None:
-    found = check(attached(BACKGROUND_ONLY), *SMALL)
+    found = check(attached(BACKGROUND_ONLY, EVERYTHING), *SMALL)
     words = words_of(found)
     assert words["background"] == "pass"
     assert words["headlight-plane"] == "fail"
@@ -52,7 +53,7 @@ def test_a_rung_that_fails_blocks_what_builds_on_it_and_is_named_as_the_blocker(
 
 
 def test_no_block_asks_every_rung(attached: Attached, check: Check) -> None:
-    found = check(attached(BACKGROUND_ONLY), *SMALL, "--no-block")
+    found = check(attached(BACKGROUND_ONLY, EVERYTHING), *SMALL, "--no-block")
     words = words_of(found)
     assert set(words.values()) <= {"pass", "fail", "undecided"}
     assert all(v.process is not None for v in rungs_of(found))
@@ -67,6 +68,11 @@ def test_scenes_are_asked_once_and_in_the_ladders_order(attached: Attached, chec
     found = check(attached(BACKGROUND_ONLY), *SMALL, "--scenes", "depth-order,background,depth-order", "--no-block")
     assert list(words_of(found)) == ["background", "depth-order"]
     assert found.planned == 2
+
+
+def test_who_does_not_speak_of_fresnel_is_not_asked_for_it(attached: Attached, check: Check) -> None:
+    words = words_of(check(attached(BACKGROUND_ONLY), *SMALL, "--scenes", "background,glass-fresnel", "--no-block"))
+    assert words == {"background": "pass", "glass-fresnel": "unsupported"}
 
 
 def test_features_a_tracer_lacks_are_unsupported_and_named(attached: Attached, check: Check) -> None:
