@@ -23,6 +23,8 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/suite_overhead.py
 	$(BIN)/python -P benchmarks/sensitivity.py
 	$(BIN)/python -P benchmarks/containment.py
+	$(BIN)/python -P benchmarks/dialects.py
+	$(BIN)/python -P benchmarks/false_alarms.py
 	$(BIN)/python -P benchmarks/laws_speed.py
 	$(BIN)/python -P benchmarks/laws_table.py
 	$(BIN)/python -P benchmarks/peers.py

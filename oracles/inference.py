@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ class Exhibit:
         """What the picture shows."""
         return self.declared.scene
 
-    @property
+    @cached_property
     def reach(self) -> float:
         """A tolerance that 99 % of the pixels keep."""
         return float(np.quantile(self.declared.tolerance.max(axis=-1), 0.99, method="higher"))

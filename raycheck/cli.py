@@ -90,6 +90,7 @@ def parser() -> Parser:
     golden.add_argument("folder", metavar="DIR", help="where the goldens are")
     golden.add_argument("--scenes", metavar="A,B", help="make: only these scenes of the catalogue")
     golden.add_argument("--size", metavar="WxH", help="make: picture size instead of each scene's own")
+    _dialect(golden)
     golden.add_argument("--jobs", type=int, default=1, metavar="N", help="make: processes at work (%(default)s)")
 
     compare = _add(commands, "compare", "compare one image with one golden")
@@ -179,6 +180,10 @@ def _subject(command: Parser) -> None:
         choices=("float32", "float64"),
         help="what a -- COMMAND, images or a Python object compute in: tolerances follow from it (float32)",
     )
+    _dialect(command)
+
+
+def _dialect(command: Parser) -> None:
     command.add_argument(
         "--dialect",
         action="append",

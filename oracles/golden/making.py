@@ -25,6 +25,7 @@ from oracles.golden.record import (
 )
 from oracles.images.writing import png_bytes
 from reference_tracer import certified
+from reference_tracer.dialects import Dialect, rules
 from reference_tracer.formulas.display import encode
 from reference_tracer.lanes import render as lanes
 from scenes.disk import write_whole
@@ -44,7 +45,7 @@ def make(folder: Path, scenes: Iterable[Scene], made_by: Manifest, backend: str,
     open_scenes = [s for s in wanted if not _stands(folder, kept.get(s.name), s)]
     done = len(wanted) - len(open_scenes)
     manifest = made_by.model_copy(update={"goldens": kept})
-    for name, entry in _entries(folder, open_scenes, backend, jobs):
+    for name, entry in _entries(folder, open_scenes, made_by.spoken(), backend, jobs):
         manifest = manifest.model_copy(update={"goldens": {**manifest.goldens, name: entry}})
         write_manifest(folder, manifest)
         done += 1
@@ -59,7 +60,7 @@ def _standing(folder: Path, made_by: Manifest) -> dict[str, Entry]:
         before = read_manifest(folder)
     except GoldenError:
         return {}
-    return before.goldens if before.suite == made_by.suite else {}
+    return before.goldens if (before.suite, before.dialect) == (made_by.suite, made_by.dialect) else {}
 
 
 def _stands(folder: Path, entry: Entry | None, scene: Scene) -> bool:
@@ -70,21 +71,23 @@ def _stands(folder: Path, entry: Entry | None, scene: Scene) -> bool:
     )
 
 
-def _entries(folder: Path, scenes: list[Scene], backend: str, jobs: int) -> Iterable[tuple[str, Entry]]:
+def _entries(
+    folder: Path, scenes: list[Scene], dialect: Dialect, backend: str, jobs: int
+) -> Iterable[tuple[str, Entry]]:
     if jobs == 1 or len(scenes) < 2:
         for scene in scenes:
-            yield scene.name, _one(folder, scene, backend)
+            yield scene.name, _one(folder, scene, dialect, backend)
         return
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        waiting = {pool.submit(_one, folder, scene, backend): scene.name for scene in scenes}
+        waiting = {pool.submit(_one, folder, scene, dialect, backend): scene.name for scene in scenes}
         for future in as_completed(waiting):
             yield waiting[future], future.result()
 
 
-def _one(folder: Path, scene: Scene, backend: str) -> Entry:
+def _one(folder: Path, scene: Scene, dialect: Dialect, backend: str) -> Entry:
     """Certify one scene and write its four files."""
-    found = certified.render(scene, lanes.backend(backend, 64))
-    first = lanes.first_hits(scene)
+    found = certified.render(scene, lanes.backend(backend, 64), rules(dialect))
+    first = lanes.first_hits(scene, rules(dialect))
     contents = {
         "exr": _layers(found, first),
         "npz": _full(found),

@@ -16,9 +16,10 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
 from oracles.verdict import Frozen
+from reference_tracer.dialects import Dialect
 from scenes.disk import read_bounded, write_whole
 from scenes.errors import SceneError
 from scenes.files import load as load_scene
@@ -51,14 +52,23 @@ class Manifest(Frozen):
     machine: str
     packages: dict[str, str]
     command: str
+    dialect: dict[str, bool | str] = Field(default_factory=dict)
     goldens: dict[str, Entry]
+
+    def spoken(self) -> Dialect:
+        """The dialect that the goldens follow; raise GoldenError where there is none of that name."""
+        try:
+            return Dialect(**self.dialect)  # type: ignore[arg-type]
+        except (TypeError, ValueError) as error:
+            raise GoldenError(f"dialect: {error}") from None
 
 
 @dataclass(frozen=True)
 class Golden:
-    """A scene with its stored truth: |truth - value| <= bound, (height, width, 3)."""
+    """A scene with its stored truth under a dialect: |truth - value| <= bound, (height, width, 3)."""
 
     scene: Scene
+    dialect: Dialect
     value: NDArray[np.float64]
     bound: NDArray[np.float64]
     decided: NDArray[np.bool_]
@@ -117,6 +127,6 @@ def load(path: Path) -> Golden:
     try:
         scene = load_scene(path.with_suffix(".json"))
         with np.load(io.BytesIO(path.with_suffix(".npz").read_bytes()), allow_pickle=False) as stored:
-            return Golden(scene, stored["value"], stored["bound"], stored["decided"])
+            return Golden(scene, manifest.spoken(), stored["value"], stored["bound"], stored["decided"])
     except (SceneError, OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise GoldenError(f"{path}: {error}") from None

@@ -10,6 +10,7 @@ import numpy as np
 
 from oracles.golden.record import Entry, GoldenError, changed_file, load, read_manifest
 from reference_tracer import certified
+from reference_tracer.dialects import rules
 from reference_tracer.lanes import render as lanes
 from scenes.model import Scene
 
@@ -43,7 +44,7 @@ def _problem(folder: Path, name: str, entry: Entry, today: Scene | None, backend
         return "its scene is not the one it was made of"
     if today is not None and today.resized(*_size(golden.scene)).content_hash() != entry.scene_hash:
         return "stale: the catalogue's scene has changed since"
-    found = certified.render(golden.scene, lanes.backend(backend, 64))
+    found = certified.render(golden.scene, lanes.backend(backend, 64), rules(golden.dialect))
     if golden.value.shape != found.value.shape:
         return f"its picture has shape {golden.value.shape}, not {found.value.shape}"
     apart = np.abs(golden.value - found.value) > golden.bound + found.bound

@@ -16,6 +16,7 @@ from oracles.metrics import appearance
 from oracles.truth import DOUBTS, truth
 from raycheck.errors import CONFORMS, DIFFERS, UsageError
 from raycheck.lanes import best_lanes
+from reference_tracer.dialects import rules
 from reference_tracer.formulas.display import encode
 
 PRECISIONS = {"32": "float32", "64": "float64", "8bit": "float32"}
@@ -33,7 +34,7 @@ def run(options: Namespace) -> int:
         return DIFFERS
     if options.precision == "8bit" and picture.maximum is None:
         picture = Picture(encode(picture.values, golden.scene.display).astype(np.float64), 255)
-    expected = truth(golden.scene, PRECISIONS[options.precision], best_lanes())
+    expected = truth(golden.scene, PRECISIONS[options.precision], best_lanes(), rules(golden.dialect))
     # The tolerance was taken about the lanes' value; the golden lies within its own bound of it
     reach = expected.tolerance + np.abs(expected.pixels - golden.value) + golden.bound
     found = compare(picture, replace(expected, pixels=golden.value, tolerance=reach))

@@ -8,11 +8,12 @@ from pathlib import Path
 from oracles.golden import GoldenError, make, verify
 from oracles.golden.record import Manifest
 from raycheck import VERSION, session
-from raycheck.commands.options import command_line, size_of
+from raycheck.commands.options import command_line, dialect_words, size_of
 from raycheck.errors import CONFORMS, DIFFERS, UsageError
 from raycheck.lanes import best_lanes
 from raycheck.machine import machine
 from raycheck.progress import Progress
+from raycheck.subjects import dialect_of
 from scenes.catalogue import ladder
 from scenes.model import Scene
 
@@ -39,6 +40,7 @@ def _make(options: Namespace, folder: Path) -> int:
         machine=f"{here.processor}, {here.cores} cores, {here.system}, Python {here.python}",
         packages=here.packages,
         command=command_line(options),
+        dialect=dialect_of(dialect_words(options.dialect)).choices().other(),
         goldens={},
     )
     progress = Progress("making goldens", len(scenes))

@@ -19,6 +19,7 @@ import raycheck.cli
 from oracles.golden import GoldenError, load, make, verify
 from oracles.golden.record import Manifest, read_manifest
 from reference_tracer import certified
+from reference_tracer.dialects import Dialect, rules
 from scenes.catalogue import ladder, rung
 from scenes.model import Scene
 
@@ -212,3 +213,21 @@ def test_verify_tells_and_exits_1(folder: Path, capsys: pytest.CaptureFixture[st
     (folder / "two-lights.png").unlink()
     assert raycheck_("golden", "verify", folder) == 1
     assert "two-lights: two-lights.png: missing\n1 golden does not stand" in capsys.readouterr().out
+
+
+def test_goldens_of_a_dialect_hold_its_exact_values_and_replace_others(folder: Path) -> None:
+    dialect = Dialect(lambert="1/pi")
+    make(folder, scenes(), MADE_BY.model_copy(update={"dialect": dialect.other()}), "numpy", 1, silent)
+    golden = load(folder / "two-lights.exr")
+    truth = certified.render_exact(golden.scene, rules(dialect))
+    assert golden.dialect == dialect
+    assert (np.abs(golden.value - truth.value) <= golden.bound + truth.bound).all()
+    assert verify(folder, today, "numpy", silent) == {}
+
+
+def test_a_golden_knows_how_close_its_decisions_were(folder: Path) -> None:
+    with np.load(folder / "glass-sphere.npz") as stored:
+        margin = stored["margin"]
+    channels = OpenEXR.File(str(folder / "glass-sphere.exr"), separate_channels=True).channels()
+    assert (margin > 0.0).all()
+    np.testing.assert_array_equal(channels["margin.V"].pixels, margin.astype(np.float32))
