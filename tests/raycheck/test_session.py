@@ -64,7 +64,7 @@ def test_two_runs_give_the_same_results_durations_aside(attached: Attached, chec
 
 def test_every_picture_that_a_verdict_names_is_there(attached: Attached, check: Check, tmp_path: Path) -> None:
     found = check(attached(BLACK), "--size", "16x12", "--no-block")
-    rungs = [v for v in found.verdicts if v.check.startswith("image/")]
+    rungs = [v for v in found.verdicts if v.check.startswith("image/") and v.verdict != "unsupported"]
     named = [p for v in rungs for p in v.pictures.model_dump().values() if p]
     assert len(named) == 3 * len(rungs)
     for name in named:
