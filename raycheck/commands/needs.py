@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from argparse import Namespace
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -22,9 +23,13 @@ from reference_tracer import certified
 from reference_tracer.lanes import render as lanes
 from reference_tracer.methods import SPHERE
 from reference_tracer.rulebook import Rulebook
-from scenes.model import Scene
+from scenes.model import MAX_SIDE, Scene
 
-ROUNDS = 9
+ROUNDS = 25
+PIXELS = 2**18
+"""At least so many are timed: starting the lanes costs as much as some ten thousand."""
+PATIENCE = 4.0
+"""Seconds after which a slow step sits out the remaining rounds."""
 BITS: dict[Precision, int] = {"float32": 32, "float64": 64}
 DEEPEST = 16
 
@@ -62,14 +67,17 @@ def _measured(scene: Scene, progress: Progress) -> tuple[Needs, list[str]]:
     true = certify(least, progress)
     tried = trials(least, true, draw)
     steps = list(_steps(scene, found, tried[-1]))
-    times = interleaved({step.name: step.work() for step in steps}, ROUNDS, progress.say)
+    times = interleaved({step.name: step.work() for step in steps}, ROUNDS, progress.say, PATIENCE)
     base = times[steps[0].name].least
     deeper = certify(steps[1].scene, progress) if len(steps) > 1 and steps[1].scene.depth > least.depth else None
     more = changed(true, deeper, tolerance) if deeper is not None else None
-    lines = [*_trials(tried), "", f"time of a picture ({best_lanes()} lanes, least of {ROUNDS} interleaved rounds)"]
+    size = "x".join(map(str, _timed(least)))
+    heading = f"time of {size} pixels ({best_lanes()} lanes, least of {ROUNDS} interleaved rounds)"
+    lines = [*_trials(tried), "", heading]
     for step in steps:
-        seconds = times[step.name].least
-        lines.append(f"  {step.name:<40}{seconds * 1e3:>9.2f} ms {seconds / base:>7.2f} times")
+        seconds, middle = times[step.name].least, times[step.name].quartiles[1]
+        spread = f"(median {middle * 1e3:.2f} ms)"
+        lines.append(f"  {step.name:<30}{seconds * 1e3:>9.2f} ms {seconds / base:>7.2f} times {spread:>20}")
     if deeper is not None:
         what = f"is another picture: {_words(more)}" if more else "changes nothing"
         lines.append(f"  (depth {least.depth + 1} {what})")
@@ -87,7 +95,16 @@ class Step:
 
     def work(self) -> Work:
         """One picture."""
-        return Work(partial(draw, self.scene, self.precision, SPHERE[self.method]), 1)
+        scene = self.scene.resized(*_timed(self.scene))
+        return Work(partial(draw, scene, self.precision, SPHERE[self.method]), 1)
+
+
+def _timed(scene: Scene) -> tuple[int, int]:
+    """The picture's size times the least whole number that makes it large enough to time."""
+    width, height = scene.image.width, scene.image.height
+    times = math.ceil(math.sqrt(PIXELS / (width * height)))
+    times = max(1, min(times, MAX_SIDE // max(width, height)))
+    return width * times, height * times
 
 
 def _steps(scene: Scene, found: Needs, enough: Trial) -> Iterator[Step]:
@@ -127,10 +144,10 @@ def told(scene: Scene, found: Needs) -> Iterator[str]:
 
 
 def _words(change: Change) -> str:
-    return (
-        f"{change.pixels} pixels differ, ({change.i}, {change.j}) by {change.by:.3g}, "
-        f"{change.tolerances:.3g} tolerances of float32"
-    )
+    told = f"{change.tolerances:.3g} tolerances of float32"
+    if math.isinf(change.tolerances):
+        told = "where float32 may not err at all"
+    return f"{change.pixels} pixels differ, ({change.i}, {change.j}) by {change.by:.3g}, {told}"
 
 
 def _trials(tried: list[Trial]) -> Iterator[str]:
