@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oracles.measurement import Precision
-from reference_tracer.certified import Certified
+from reference_tracer.certified import BALL_BITS, Certified
 from reference_tracer.formulas.display import encode
 from reference_tracer.methods import SPHERE
 from reference_tracer.rulebook import Rulebook
@@ -192,7 +192,8 @@ class Trial:
     """A precision and a way to meet spheres, and how far their picture is from truth.
 
     codes: the largest error in codes of 0..255; i, j: its pixel; error: the largest error of a linear value; wrong:
-    pixels more than half a code off. Pixels that no precision decides are left out.
+    pixels more than half a code off. Pixels on an edge so closely that balls of 53 bits do not decide their path are
+    left out: rays that touch a sphere exactly are a matter of luck in float64 too.
     """
 
     precision: Precision
@@ -227,8 +228,9 @@ def trials(scene: Scene, true: Certified, draw: Draw) -> list[Trial]:
 def _judged(scene: Scene, true: Certified, precision: Precision, method: str, got: NDArray[np.floating]) -> Trial:
     picture = got.astype(np.float64)
     shown = [encode(values, scene.display, CODES * FINE) / FINE for values in (picture, true.value)]
-    off = np.where(true.decided[..., None], np.abs(shown[0] - shown[1]), 0.0)
-    error = np.where(true.decided[..., None], np.abs(picture - true.value), 0.0)
+    judged = (true.decided & (true.bits <= BALL_BITS))[..., None]
+    off = np.where(judged, np.abs(shown[0] - shown[1]), 0.0)
+    error = np.where(judged, np.abs(picture - true.value), 0.0)
     j, i, _ = np.unravel_index(int(np.argmax(off)), off.shape)
     wrong = int((off > HALF_A_CODE).any(axis=-1).sum())
     return Trial(precision, method, float(off.max()), int(i), int(j), float(error.max()), wrong)

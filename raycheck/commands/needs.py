@@ -73,7 +73,9 @@ def _measured(scene: Scene, progress: Progress) -> tuple[Needs, list[str]]:
     more = changed(true, deeper, tolerance) if deeper is not None else None
     size = "x".join(map(str, _timed(least)))
     heading = f"time of {size} pixels ({best_lanes()} lanes, least of {ROUNDS} interleaved rounds)"
-    lines = [*_trials(tried), "", heading]
+    edges = int((true.bits > certified.BALL_BITS).sum())
+    lines = [*_trials(tried), f"  ({edges} pixels on an edge are left out)"] if edges else list(_trials(tried))
+    lines += ["", heading]
     for step in steps:
         seconds, middle = times[step.name].least, times[step.name].quartiles[1]
         spread = f"(median {middle * 1e3:.2f} ms)"

@@ -138,3 +138,12 @@ def test_a_better_formula_lets_float32_suffice_far_away() -> None:
     assert found[-1].precision == "float32"
     assert found[-1].method == "perpendicular"
     assert found[-1].suffices
+
+
+def test_rays_that_touch_a_sphere_exactly_are_asked_of_no_precision() -> None:
+    # four pixels of this picture lie on the silhouette so closely that float64 gets them wrong with the lecture's formula
+    scene = rung("ambient-diffuse").scene()
+    true = certify(scene)
+    (trial,) = tried(scene)
+    assert (true.bits > certified.BALL_BITS).sum() == 4
+    assert trial.suffices
