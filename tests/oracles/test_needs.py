@@ -141,7 +141,7 @@ def test_a_better_formula_lets_float32_suffice_far_away() -> None:
 
 
 def test_rays_that_touch_a_sphere_exactly_are_asked_of_no_precision() -> None:
-    # four pixels of this picture lie on the silhouette so closely that float64 gets them wrong with the lecture's formula
+    # four pixels lie on the silhouette so closely that float64 too gets them wrong with the lecture's formula
     scene = rung("ambient-diffuse").scene()
     true = certify(scene)
     (trial,) = tried(scene)
