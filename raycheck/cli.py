@@ -22,8 +22,8 @@ builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock|/path]], builtin:povray, images:D
 python:module:attr (trusted code), or nothing and the tracer's command after --:
   raycheck check -- ./tracer {scene} {image}"""
 
-ARRAYS = """SUBJECT is python:module:attr with sphere(o, v, c, r) or refract(v, n, index) on arrays (trusted code);
-without it our own methods are measured."""
+ARRAYS = """SUBJECT is a folder whose raycheck.toml has a probe, or python:module:attr with sphere(o, v, c, r) or
+refract(v, n, index) on arrays (trusted code); without it our own methods are measured."""
 
 TRACERS = (
     """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]] or python:module:attr."""
@@ -131,6 +131,10 @@ def parser() -> Parser:
     chart.add_argument("--precision", choices=("float32", "float64"), help="what a Python object computes in (float32)")
     chart.add_argument("--out", default="raycheck-chart", metavar="DIR", help="where the report goes (%(default)s)")
     chart.add_argument("--seed", type=int, default=0, metavar="N", help="of the random inputs (%(default)s)")
+
+    needs = _add(commands, "needs", "what a scene needs: features, depth, precision, method; what more costs")
+    needs.add_argument("scene", metavar="SCENE", help="a scene file (.json, .txt) or a name of the catalogue")
+    needs.add_argument("--size", metavar="WxH", help="picture size instead of the scene's own; pixels stay square")
 
     grade = _add(commands, "grade", "grade a class of submissions by a rubric, in a sandbox")
     grade.add_argument(

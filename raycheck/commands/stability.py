@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from argparse import Namespace
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from oracles.laws import NoAnswerError
 from oracles.measurement import Precision
 from oracles.stability import cases, depths, frontiers, maps, starts
 from oracles.stability.probe import RefractProbe, SphereProbe, refract_methods, sphere_methods
@@ -19,15 +21,17 @@ from raycheck import VERSION
 from raycheck.commands.options import command_line
 from raycheck.errors import CONFORMS, StartError, UsageError
 from raycheck.machine import machine
+from raycheck.probes import prober_of
+from raycheck.probes.arrays import ArrayProbe
 from raycheck.progress import Progress
 from raycheck.session import make_folder
 from raycheck.subjects.attach import attach
-from raycheck.subjects.inprocess import PythonSubject
 from reports import stability
 from reports.measured import number
 
 PRECISIONS: tuple[Precision, ...] = ("float32", "float64")
 STEPS = 18
+WAYS = "a probe in raycheck.toml, or methods on arrays, see docs/stability.md"
 
 
 @dataclass(frozen=True)
@@ -38,65 +42,46 @@ class Asked:
     refract: tuple[RefractProbe, ...] = ()
 
 
-@dataclass(frozen=True)
-class ArrayProbe:
-    """An object of this process with `sphere` or `refract` on arrays."""
-
-    name: str
-    precision: Precision
-    tracer: Any
-
-    def sphere(self, o: Any, v: Any, c: Any, r: Any) -> Any:
-        return self._answer("sphere", (len(r),), o, v, c, r)
-
-    def refract(self, v: Any, n: Any, index: Any) -> Any:
-        return self._answer("refract", (len(index), 3), v, n, index)
-
-    def _answer(self, operation: str, shape: tuple[int, ...], *inputs: Any) -> Any:
-        """What the object gives, as reals of this shape; StartError for anything else."""
-        try:
-            # copies: it may write into what it is given
-            found = np.asarray(getattr(self.tracer, operation)(*(a.copy() for a in inputs)), dtype=np.float64)
-        except (Exception, SystemExit) as error:  # a stranger's code
-            raise StartError(f"{self.name}.{operation}: {type(error).__name__}: {error}") from None
-        if found.shape != shape:
-            raise StartError(f"{self.name}.{operation} gives an array of shape {found.shape}", f"{shape} is expected")
-        return found
-
-
 def run(options: Namespace) -> int:
     """Measure, write, tell."""
-    asked = probes_of(options.subject, options.precision or "float32")
-    folder = Path(options.out)
-    make_folder(folder)
-    found = measure(asked, options.subject, options.seed, command_line(options))
+    with ExitStack() as held:
+        asked = probes_of(options.subject, options.precision, held)
+        folder = Path(options.out)
+        make_folder(folder)
+        found = measure(asked, options.subject, options.seed, command_line(options))
     path = stability.write(found, folder)
     for line in stability.sentences(found):
         print(line)
+    wide = max(16, *(len(f.method) + 2 for f in found.frontiers))
     for question in found.questions:
         print(f"\n{question.title} ({question.unit})")
         for f in (f for f in found.frontiers if f.question == question.name):
             bound = "beyond " if f.open else ""
-            print(f"  {f.method:<16}{f.precision}  {bound}{number(f.reach):<12} law {number(f.predicted)}")
+            print(f"  {f.method:<{wide}}{f.precision}  {bound}{number(f.reach):<12} law {number(f.predicted)}")
     print(f"report: {path}")
     return CONFORMS
 
 
-def probes_of(spec: str | None, precision: Precision) -> Asked:
-    """What a SUBJECT can be asked; one that answers about neither spheres nor refraction is refused."""
+def probes_of(spec: str | None, precision: Precision | None, held: ExitStack) -> Asked:
+    """What a SUBJECT can be asked until `held` closes; one that answers nothing of it is refused."""
     if spec is None:
         return Asked()
-    subject = attach(spec, precision)
-    if not isinstance(subject, PythonSubject):
-        raise UsageError(f"{spec} answers no single rays yet", "python:module:attr with sphere(o, v, c, r) on arrays")
+    if precision is not None and not spec.startswith("python:"):
+        raise UsageError(f"--precision {precision} does not go with {spec}", "SUBJECT or its raycheck.toml says it")
+    subject = attach(spec, precision or "float32")
     subject.prepare()
-    probe = ArrayProbe(subject.name, precision, subject.tracer)
-    asked = Asked(
-        (probe,) if hasattr(subject.tracer, "sphere") else (),
-        (probe,) if hasattr(subject.tracer, "refract") else (),
-    )
+    prober = prober_of(subject)
+    if prober is None:
+        raise UsageError(f"{spec} answers neither sphere nor refract", WAYS)
+    held.callback(prober.close)
+    try:
+        operations = prober.open()
+    except NoAnswerError as error:
+        raise StartError(f"{spec}: {error}") from None
+    probe = ArrayProbe(spec, "float64" if subject.precision == "float64" else "float32", prober)
+    asked = Asked((probe,) if "sphere" in operations else (), (probe,) if "refract" in operations else ())
     if not (asked.sphere or asked.refract):
-        raise UsageError(f"{spec} has neither sphere nor refract", "methods on arrays, see docs/stability.md")
+        raise UsageError(f"{spec} answers neither sphere nor refract", WAYS)
     return asked
 
 

@@ -6,6 +6,7 @@ import tomllib
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from typing import Any
 
 from scenes.errors import SceneError
 from scenes.json_form import from_json
@@ -13,17 +14,30 @@ from scenes.model import Scene
 
 
 @dataclass(frozen=True)
+class Needs:
+    """The least model that draws a scene's picture: features in the manifest's words, generations after the eye ray.
+
+    beyond: why the scene asks for more, empty where it does not.
+    """
+
+    features: frozenset[str]
+    depth: int
+    beyond: str = ""
+
+
+@dataclass(frozen=True)
 class Rung:
     """One scene of the ladder.
 
     slide: of L11, which the scene tests; teaches: its one idea; requires: rungs
-    whose failure makes this one meaningless.
+    whose failure makes this one meaningless; needs: None where nobody has shown it.
     """
 
     name: str
     slide: str
     teaches: str
     requires: tuple[str, ...]
+    needs: Needs | None = None
 
     def scene(self) -> Scene:
         """The scene itself, read and validated."""
@@ -31,12 +45,16 @@ class Rung:
         return from_json(text, f"catalogue/{self.name}.json")
 
 
+def _needs(table: dict[str, Any]) -> Needs:
+    return Needs(frozenset(table["features"]), table["depth"], table.get("beyond", ""))
+
+
 @cache
 def ladder() -> tuple[Rung, ...]:
     """All rungs, each after those that it requires."""
     text = resources.files("scenes.catalogue").joinpath("ladder.toml").read_text("utf-8")
     return tuple(
-        Rung(entry["name"], entry["slide"], entry["teaches"], tuple(entry["requires"]))
+        Rung(entry["name"], entry["slide"], entry["teaches"], tuple(entry["requires"]), _needs(entry["needs"]))
         for entry in tomllib.loads(text)["rung"]
     )
 

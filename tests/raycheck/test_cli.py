@@ -30,6 +30,7 @@ COMMANDS = (
     "scenes",
     "stability",
     "chart",
+    "needs",
     "grade",
     "init",
     "report",
