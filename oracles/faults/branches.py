@@ -37,7 +37,8 @@ def _local_twice(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transm
 
 
 def _red_for_all(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transmitted: Vec) -> Vec:
-    return (local + reflected * reflect.x) + transmitted * transmit.x
+    found: Vec = (local + reflected * reflect.x) + transmitted * transmit.x
+    return found
 
 
 _PHONG = "Phong Effect"

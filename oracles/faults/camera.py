@@ -60,7 +60,8 @@ def _half_view(i: Any, j: Any, w: Any, h: Any, sample: Any) -> Point:
 
 
 def _not_unit(forward: Vec, right: Vec, up: Vec, X: Any, Y: Any) -> Vec:
-    return (forward + right * X) + up * Y
+    found: Vec = (forward + right * X) + up * Y
+    return found
 
 
 def _backwards(forward: Vec, right: Vec, up: Vec, X: Any, Y: Any) -> Vec:

@@ -12,7 +12,8 @@ from reference_tracer.vector import Vec, dot, select_vec
 
 
 def _across(v: Vec, n: Vec) -> Vec:
-    return n * -dot(v, n) + v
+    found: Vec = n * -dot(v, n) + v
+    return found
 
 
 def _shares(v: Vec, n: Vec, leaving: Any, index: Any) -> tuple[Number, Number]:

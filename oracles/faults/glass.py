@@ -21,7 +21,8 @@ def _bent(v: Vec, n: Vec, s: Vec) -> Bent:
 
 
 def _across(v: Vec, n: Vec) -> Vec:
-    return n * -dot(v, n) + v
+    found: Vec = n * -dot(v, n) + v
+    return found
 
 
 def _never_inverted(v: Vec, n: Vec, leaving: Any, index: Any) -> Bent:

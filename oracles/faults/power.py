@@ -62,7 +62,8 @@ class Bench:
             judged = compare(check(found), self.truth).judged
         except ImageError:  # NaN or Inf: no picture at all
             return Kill(self.scene.name, found.values.shape[0] * found.values.shape[1], float("inf"))
-        return Kill(self.scene.name, judged.outside, judged.worst.excess) if judged.outside else None
+        worst = judged.worst
+        return Kill(self.scene.name, judged.outside, worst.excess) if judged.outside and worst else None
 
 
 _BALLS = frozenset({"sphere_distances", "sphere_hit", "sphere_normal"})

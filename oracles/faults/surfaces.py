@@ -62,7 +62,8 @@ def _sides_swapped(v: Vec, n: Vec) -> tuple[Vec, Condition]:
 
 
 def _dark_inside(n: Vec, leaving: Condition) -> Vec:
-    return n * select(leaving, 0.0, 1.0)
+    found: Vec = n * select(leaving, 0.0, 1.0)
+    return found
 
 
 _BALL, _PLANE, _REFRACT = "Ray Tracing with a Sphere", "Object Modeling in uObj", "Get Refraction Vector"

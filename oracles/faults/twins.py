@@ -31,12 +31,14 @@ def _two_b(b: Vec, bv: Any, v: Vec, r: Any) -> tuple[Number, Number, Number]:
 
 
 def _folded(i: Vec, n: Vec) -> Vec:
-    return -(i - n * dot(i, n) - n * dot(i, n))
+    found: Vec = -(i - n * dot(i, n) - n * dot(i, n))
+    return found
 
 
 def _weighed_first(colour: Vec, factor: Any, diffuse: Vec, cosine: Any, specular: Vec, gloss: Any) -> Vec:
     light = colour * factor
-    return diffuse * light * cosine + specular * light * gloss
+    share: Vec = diffuse * light * cosine + specular * light * gloss
+    return share
 
 
 def _mixed_backwards(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transmitted: Vec) -> Vec:

@@ -31,6 +31,8 @@ COMMANDS = (
     "stability",
     "chart",
     "grade",
+    "faults",
+    "power",
     "init",
     "report",
     "doctor",
