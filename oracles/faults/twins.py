@@ -86,11 +86,6 @@ TWINS = (
         "reflected rays made unit again",
         instead("unit-again", mirror=lambda i, n: unit(optics.reflect(i, n))),
     ),
-    Twin(
-        "cosine-once-more",
-        "lambert by max after a product",
-        instead("cosine-once-more", lambert=lambda i, n: clamp0(dot(n, i)) * 1.0),
-    ),
     Twin("least-distance-1e-4", "no hit before 1e-4", instead("least-distance-1e-4", **above(1e-4))),
     Twin("half-float-file", "written as half floats", picture=_half_file),
     Twin("byte-file", "written as 8-bit codes", picture=_codes),
