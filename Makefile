@@ -48,11 +48,12 @@ constraints:
 
 # The published schemas, from the models.
 schemas: $(READY)
-	$(BIN)/python -P -c "from pathlib import Path; from scenes import json_form; from reports import chart, results, stability; \
+	$(BIN)/python -P -c "from pathlib import Path; from scenes import json_form; from reports import chart, power, results, stability; \
 	  Path('scenes/schema/scene-1.json').write_text(json_form.schema()); \
 	  Path('reports/schema/results-1.json').write_text(results.schema()); \
 	  Path('reports/schema/stability-1.json').write_text(stability.schema()); \
-	  Path('reports/schema/chart-1.json').write_text(chart.schema())"
+	  Path('reports/schema/chart-1.json').write_text(chart.schema()); \
+	  Path('reports/schema/power-1.json').write_text(power.schema())"
 
 clean:
-	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-stability raycheck-chart raycheck-peers examples/*/tracer
+	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-stability raycheck-chart raycheck-peers raycheck-power examples/*/tracer

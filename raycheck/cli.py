@@ -18,8 +18,8 @@ EXIT_CODES = """exit codes: 0 conforms, 1 does not conform, 2 the call, scene or
 3 the tracer could not be started, 4 the suite itself failed, 130 interrupted"""
 
 SUBJECT = """SUBJECT is a folder with raycheck.toml, builtin:reference[/plain|numpy|drjit[/32|64]],
-builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock|/path]], builtin:povray, images:DIR (one image a scene),
-python:module:attr (trusted code), or nothing and the tracer's command after --:
+builtin:mitsuba[/scalar_rgb|llvm_ad_rgb[/stock|/path]], builtin:povray, builtin:fault/NAME[/32|64],
+images:DIR (one image a scene), python:module:attr (trusted code), or nothing and the tracer's command after --:
   raycheck check -- ./tracer {scene} {image}"""
 
 ARRAYS = """SUBJECT is a folder whose raycheck.toml has a probe, or python:module:attr with sphere(o, v, c, r) or
@@ -151,6 +151,14 @@ def parser() -> Parser:
     grade.add_argument("--explain", metavar="NAME", help="grade nothing; say how this score came about")
     grade.add_argument("--gradescope-bundle", metavar="ZIP", help="grade nothing; write an autograder of this rubric")
     grade.add_argument("--i-trust-this-code", action="store_true", help="run the submissions without a sandbox")
+
+    faults = _add(commands, "faults", "the known mistakes, or one of them explained")
+    faults.add_argument("name", nargs="?", metavar="NAME", help="a name of the list")
+    faults.add_argument("--explain", metavar="NAME", help="the same as NAME")
+
+    power = _add(commands, "power", "which scenes notice which known mistake, and whether any fails a correct tracer")
+    power.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")
+    power.add_argument("--out", default="raycheck-power", metavar="DIR", help="where the report goes (%(default)s)")
 
     init = _add(commands, "init", "write a tracer to begin with: all but the formulas is done")
     init.add_argument("language", choices=("cpp", "python", "rust", "go", "java", "javascript"), help="its language")

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from oracles.faults import Fault
 from oracles.laws import NoAnswerError
 from oracles.laws.cases import Question
 from raycheck.probes.prober import Reals
 from reference_tracer.operations import ANSWERS, formulas
+from reference_tracer.rulebook import LECTURE
 from scenes.json_form import to_json
 from scenes.model import Scene
 
@@ -91,11 +93,11 @@ class PythonProber:
 
 
 class ReferenceProber:
-    """The reference tracer by its rulebook, on plain floats or lanes."""
+    """The reference tracer by its rulebook, or by that of a fault, on plain floats or lanes."""
 
-    def __init__(self, arithmetic: str, bits: int) -> None:
-        self.arithmetic, self.bits = arithmetic, bits
-        self.ask = formulas(arithmetic, bits)
+    def __init__(self, arithmetic: str, bits: int, fault: Fault | None = None) -> None:
+        self.arithmetic, self.bits, self.fault = arithmetic, bits, fault
+        self.ask = formulas(arithmetic, bits, fault.rules if fault else LECTURE)
 
     def open(self) -> frozenset[str]:
         """All operations."""
@@ -112,7 +114,10 @@ class ReferenceProber:
         """A call of Python with the same numbers."""
         calls = "; ".join(f"print(f('{q.operation}', array([{list(q.arguments)}])))" for q in _without_scene(questions))
         start = "from numpy import array; from reference_tracer.operations import formulas"
-        return f"python -c \"{start}; f = formulas('{self.arithmetic}', {self.bits}); {calls}\""
+        rules = ""
+        if self.fault:
+            start, rules = f"{start}; from oracles.faults import fault", f", fault('{self.fault.name}').rules"
+        return f"python -c \"{start}; f = formulas('{self.arithmetic}', {self.bits}{rules}); {calls}\""
 
 
 def _without_scene(questions: tuple[Question, ...]) -> list[Question]:

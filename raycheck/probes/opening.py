@@ -7,6 +7,7 @@ from raycheck.probes.inprocess import PythonProber, ReferenceProber
 from raycheck.probes.prober import Prober
 from raycheck.subjects import Subject
 from raycheck.subjects.command import CommandSubject
+from raycheck.subjects.fault import FaultSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
 
 
@@ -19,6 +20,8 @@ def prober_of(subject: Subject) -> Prober | None:
             )
         case ReferenceSubject():
             return ReferenceProber(subject.arithmetic, subject.bits)
+        case FaultSubject():
+            return ReferenceProber("numpy", subject.bits, subject.fault)
         case PythonSubject():
             prober = PythonProber(lambda: subject.tracer, subject.module, subject.attribute, subject.precision)
             return prober if prober.open() else None

@@ -14,6 +14,7 @@ from raycheck.manifest import DialectTable, Manifest
 from raycheck.sandbox import Jail
 from raycheck.sandbox.intake import copy
 from raycheck.subjects.command import CommandSubject
+from raycheck.subjects.fault import FaultSubject
 from raycheck.subjects.images import ImagesSubject
 from raycheck.subjects.inprocess import PythonSubject, ReferenceSubject
 from raycheck.subjects.mitsuba import MitsubaSubject
@@ -34,8 +35,10 @@ def attach(spec: str, precision: str = "float32", dialect: Dialect = SCENE_MODEL
             return MitsubaSubject(rest)
         case "builtin" if rest.split("/")[0] == "povray":
             return PovraySubject(rest)
+        case "builtin" if rest.split("/")[0] == "fault":
+            return FaultSubject(rest)
         case "builtin":
-            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, mitsuba or povray")
+            raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, mitsuba, povray or fault/NAME")
         case "images":
             return ImagesSubject(Path(rest), precision, dialect)
         case "python" if rest.count(":") == 1:

@@ -32,6 +32,8 @@ COMMANDS = (
     "chart",
     "needs",
     "grade",
+    "faults",
+    "power",
     "init",
     "report",
     "doctor",

@@ -1,0 +1,155 @@
+"""Faults of Fresnel's share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from oracles.faults.fault import Fate, Fault, instead
+from reference_tracer import rulebook
+from reference_tracer.formulas import optics
+from reference_tracer.numbers import Condition, Number, less, select, sqrt0
+from reference_tracer.vector import Vec, dot, select_vec
+
+
+def _across(v: Vec, n: Vec) -> Vec:
+    found: Vec = n * -dot(v, n) + v
+    return found
+
+
+def _shares(v: Vec, n: Vec, leaving: Any, index: Any) -> tuple[Number, Number]:
+    """Fresnel's amplitudes across and along the plane of incidence, by the formulas of optics.fresnel."""
+    c1, p = -dot(v, n), _across(v, n)
+    s = select_vec(leaving, p * index, p / index)
+    c2 = sqrt0(1.0 - dot(s, s))
+    n1, n2 = select(leaving, index, 1.0), select(leaving, 1.0, index)
+    across, along = n1 * c1 + n2 * c2, n2 * c1 + n1 * c2
+    return (n1 * c1 - n2 * c2) / across, (n2 * c1 - n1 * c2) / along
+
+
+def _s_only(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
+    r_s, _ = _shares(v, n, leaving, index)
+    return r_s * r_s
+
+
+def _not_squared(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
+    return 0.5 * sum(select(less(r, 0.0), -r, r) for r in _shares(v, n, leaving, index))
+
+
+def _no_total_case(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
+    r_s, r_p = _shares(v, n, leaving, index)
+    return 0.5 * (r_s * r_s + r_p * r_p)
+
+
+def _weighed(kept: Any) -> Any:
+    """`weights` with kept(reflect, transmit, total, F) for the two weights where the scene asks for Fresnel's share."""
+
+    def weights(reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Any) -> tuple[Vec, Vec]:
+        if not asked:
+            return rulebook.weights(reflect, transmit, total, False, share)
+        reflect, transmit = kept(reflect, transmit, share())
+        return reflect, optics.cut(total, transmit)
+
+    return weights
+
+
+_BEND = "Refraction Vector Calculation"
+_CODE = "Get Refraction Vector"
+_TR = "Refraction with geo.tr vector"
+
+_T = "t = p_u*s2 - n*sqrt(1 - s2*s2);"
+_F = "F = (r_s*r_s + r_p*r_p)/2;"
+
+_BORN = "Born & Wolf, Principles of Optics, 1.5.2"
+
+
+def _make(group: str) -> Any:
+    def entry(
+        name: str,
+        source: str,
+        wrong: str,
+        right: str,
+        seen: str,
+        mend: str,
+        fate: Fate = "killed",
+        reason: str = "",
+        **entries: Any,
+    ) -> Fault:
+        said = source if source == _BORN else f'L11 "{source}"'
+        return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
+
+    return entry
+
+
+_phong = _make("highlight")
+_mirror = _make("mirror")
+_glass = _make("glass")
+_mix = _make("branches")
+_depth = _make("recursion")
+
+FAULTS = (
+    _glass(
+        "fresnel-left-out",
+        _TR,
+        "keep = reflect; pass = transmit;",
+        "keep = reflect*F; pass = transmit*(1 - F);",
+        "glass has no bright rim",
+        "where the scene asks, weigh by F and 1 - F",
+        weights=_weighed(lambda r, t, F: (r, t)),
+    ),
+    _glass(
+        "fresnel-swapped",
+        _BORN,
+        "keep = reflect*(1 - F); pass = transmit*F;",
+        "keep = reflect*F; pass = transmit*(1 - F);",
+        "glass is a mirror straight on",
+        "F is what is reflected",
+        weights=_weighed(lambda r, t, F: (r * (1.0 - F), t * F)),
+    ),
+    _glass(
+        "fresnel-on-the-mirror-only",
+        _BORN,
+        "keep = reflect*F; pass = transmit;",
+        "keep = reflect*F; pass = transmit*(1 - F);",
+        "more light than came",
+        "what is reflected does not pass",
+        weights=_weighed(lambda r, t, F: (r * F, t)),
+    ),
+    _glass(
+        "fresnel-of-one-polarisation",
+        _BORN,
+        "F = r_s*r_s;",
+        _F,
+        "rims are too bright",
+        "the mean of both",
+        fresnel=_s_only,
+    ),
+    _glass(
+        "fresnel-not-squared",
+        _BORN,
+        "F = (fabs(r_s) + fabs(r_p))/2;",
+        _F,
+        "glass reflects far too much",
+        "light goes with the square of the amplitude",
+        fresnel=_not_squared,
+    ),
+    _glass(
+        "fresnel-index-not-inverted",
+        _BORN,
+        "F = fresnel(index);  // leaving too",
+        "F = fresnel(1/index);  // leaving",
+        "wrong brightness where light leaves glass",
+        "invert on leaving, as in Snell's law",
+        fresnel=lambda v, n, leaving, index: optics.fresnel(v, n, leaving & ~leaving, index),
+    ),
+    _glass(
+        "fresnel-without-total-reflection",
+        _BORN,
+        "F = (r_s*r_s + r_p*r_p)/2;  // no case sinθ2 >= 1",
+        _F,
+        "nothing",
+        "none needed",
+        "equivalent",
+        "Where sin²θ2 >= 1, sqrt0 makes cosθ2 = 0; then r_s = n1 c1/(n1 c1) = 1 = r_p, so F = 1: the case left out.",
+        fresnel=_no_total_case,
+    ),
+)
