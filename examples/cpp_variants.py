@@ -12,6 +12,7 @@ EXAMPLE = Path(__file__).parent / "cpp_lecture"
 Edits = tuple[tuple[str, str], ...]
 
 _X, _Y = "real X = -1 + 2 * (i + s.sx) / s.width;", "real Y = 1 - 2 * (j + s.sy) / s.height;"
+_FIND = "Vec find_rgb(const Scene& s, Vec o, Vec v, int generation) {"
 _LIMIT = "if (generation == s.depth) return ret;"
 _FRESNEL = "real F = s.fresnel ? fresnel(v, n, leaving, m.index) : 0;"
 _WEIGHTS = "real keep = s.fresnel ? F : 1, pass = s.fresnel ? 1 - F : 1;"
@@ -48,11 +49,8 @@ DIALECTS: Mapping[str, Edits] = {
     'faces = "outward"': (("local_colour(s, m, p, n, v);", "local_colour(s, m, p, leaving ? -n : n, v);"),),
     'glass_shadow = "none"': ((_SHADOW, _SHADOW.replace("if (", "if (black(obj.material.transmit) && ")),),
     'limit = "background"': (
-        (
-            _LIMIT,
-            "Vec bent;\n    if (generation == s.depth)\n        return ret + m.reflect * s.background +\n"
-            "               (refraction(v, n, leaving, m.index, bent) ? m.transmit * s.background : Vec{});",
-        ),
+        (_FIND, f"{_FIND}\n    if (generation > s.depth) return s.background;"),
+        (_LIMIT, ""),
     ),
     'limit = "local"': ((_LIMIT, "if (generation == s.depth + 1) return ret;"),),
     'mix = "lerp"': ((_LIMIT, f"ret = ret * (Vec{{1, 1, 1}} - m.reflect - m.transmit);\n    {_LIMIT}"),),

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 from reference_tracer import rulebook
-from reference_tracer.formulas import conventions, optics, shading
+from reference_tracer.formulas import conventions, shading
 from reference_tracer.numbers import Condition, Number
 from reference_tracer.rulebook import LECTURE, Rulebook
 from reference_tracer.vector import Vec
@@ -139,7 +139,7 @@ def fresnel_on_glass(
     """The weights times F and 1 - F on every transparent surface, and wherever the scene asks."""
     F = share()
     kept = F if asked else conventions.on_glass(transmit, F)
-    return reflect * kept, optics.cut(total, transmit * (1.0 - F))
+    return reflect * kept, transmit * (1.0 - F)
 
 
 def _last(dialect: Dialect, mix: Callable[..., Vec], base: Rulebook) -> Callable[..., Vec]:
@@ -147,8 +147,7 @@ def _last(dialect: Dialect, mix: Callable[..., Vec], base: Rulebook) -> Callable
     if dialect.mix == "add" and dialect.limit != "background":
         return base.last
 
-    def last(local: Vec, reflect: Vec, transmit: Vec, background: Vec) -> Vec:
-        beyond = background if dialect.limit == "background" else Vec(0.0, 0.0, 0.0)
-        return mix(local, reflect, beyond, transmit, beyond)
+    def dark(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, refracted: Vec) -> Vec:
+        return mix(local, reflect, Vec(0.0, 0.0, 0.0), transmit, Vec(0.0, 0.0, 0.0))
 
-    return last if dialect.limit != "local" else rulebook.last
+    return {"zero": dark, "background": mix, "local": rulebook.last}[dialect.limit]

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from reference_tracer.formulas.optics import cut
 from reference_tracer.image import Image
 from reference_tracer.numbers import Number
 from reference_tracer.rulebook import LECTURE, Rulebook
@@ -88,13 +89,13 @@ class PlainTracer:
             lambda: rules.fresnel(v, n, leaving, index),
         )
         if generation == rules.generations(self.scene.depth):
-            return rules.seen(rules.last(local, reflect, transmit, background))
+            return rules.seen(rules.last(local, reflect, background, transmit, cut(total, background)))
 
         # Follow the branches whose weight is not 0
         reflected = transmitted = BLACK
         if not black(reflect):
             reflected = self.find_rgb(hit.p, rules.mirror(-v, n), hit.order, generation + 1)
-        if not black(transmit):
+        if not (total or black(transmit)):
             transmitted = self.find_rgb(hit.p, t, hit.order, generation + 1)
         return rules.seen(rules.mix(local, reflect, reflected, transmit, transmitted))
 

@@ -39,18 +39,18 @@ def mix(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transmitted: Ve
 
 
 def weights(reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]) -> tuple[Vec, Vec]:
-    """What the two branches count for: the material's weights; nothing is refracted under total reflection.
+    """What the two branches count for: the material's weights, under total reflection too.
 
     asked: the scene asks for Fresnel's share F = share(); then the weights are multiplied by F and 1 - F.
     """
     if asked:
         F = share()
         reflect, transmit = reflect * F, transmit * (1.0 - F)
-    return reflect, optics.cut(total, transmit)
+    return reflect, transmit
 
 
-def last(local: Vec, reflect: Vec, transmit: Vec, background: Vec) -> Vec:
-    """Colour of a ray of the last generation: what lies beyond is worth nothing."""
+def last(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, refracted: Vec) -> Vec:
+    """Colour of a ray of the last generation: what lies beyond, at most the background, is worth nothing."""
     return local
 
 
@@ -94,7 +94,7 @@ class Rulebook:
     add_light: Callable[[Vec, Vec, Vec, Vec], Vec] = shading.add_light
     blocks: Callable[[Number, Number, Condition], Condition] = blocks
     mix: Callable[[Vec, Vec, Vec, Vec, Vec], Vec] = mix
-    last: Callable[[Vec, Vec, Vec, Vec], Vec] = last
+    last: Callable[[Vec, Vec, Vec, Vec, Vec], Vec] = last
     generations: Callable[[int], int] = generations
     seen: Callable[[Vec], Vec] = seen
     encode: Callable[..., display.Codes] = display.encode

@@ -206,6 +206,6 @@ FAULTS = (
         "if (generation == depth) return local;",
         "the last image in mirrors is black, and all where depth is 0",
         "the last ray still has a local colour",
-        last=lambda local, r, t, background: local * 0.0,
+        last=lambda local, *branches: local * 0.0,
     ),
 )

@@ -47,7 +47,7 @@ def _weighed(kept: Any) -> Any:
         if not asked:
             return rulebook.weights(reflect, transmit, total, False, share)
         reflect, transmit = kept(reflect, transmit, share())
-        return reflect, optics.cut(total, transmit)
+        return reflect, transmit
 
     return weights
 

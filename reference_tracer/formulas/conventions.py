@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from reference_tracer.formulas import camera
+from reference_tracer.formulas.optics import cut
 from reference_tracer.numbers import Condition, Number, at_least, clamp0, less, over_pi, power, select, sqrt0
 from reference_tracer.vector import Vec, dot, select_vec, unit
 
@@ -125,6 +126,6 @@ def total_reflects(weights: Callable[..., tuple[Vec, Vec]]) -> Callable[..., tup
         reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Callable[[], Number]
     ) -> tuple[Vec, Vec]:
         kept, passed = weights(reflect, transmit, total, asked, share)
-        return select_vec(total, reflect + transmit, kept), passed
+        return select_vec(total, reflect + transmit, kept), cut(total, passed)
 
     return moved

@@ -62,6 +62,6 @@ def fresnel(v: Vec, n: Vec, leaving: Condition, index: Number) -> Number:
     return select(at_least(sin2, 1.0), 1.0, F)
 
 
-def cut(total: Condition, transmit: Vec) -> Vec:
-    """The weight of the refracted ray, 0 under total reflection. L11 "Get Refraction Vector": s2 >= 1."""
-    return Vec(*(select(total, 0.0, part) for part in transmit))
+def cut(total: Condition, refracted: Vec) -> Vec:
+    """What the refracted ray brings: nothing under total reflection. L11 "Get Refraction Vector": s2 >= 1."""
+    return Vec(*(select(total, 0.0, part) for part in refracted))

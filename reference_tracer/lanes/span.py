@@ -45,7 +45,8 @@ def _mixed(m: Material, local: Vec, beyond: tuple[Vec, ...], rules: Rulebook, ba
     r, t = Vec(*m.reflect), Vec(*m.transmit)
     weights = [(BLACK, BLACK), (r, BLACK), (BLACK, t), (r, t), (r + t, BLACK)]
     if not beyond:
-        return [rules.last(own, *pair, background) for own in (BLACK, local) for pair in weights]
+        seen = (background, BLACK)
+        return [rules.last(own, w, background, x, end) for own in (BLACK, local) for w, x in weights for end in seen]
     ends = [Vec(*(x if w else 0.0 for x, w in zip(end, r + t, strict=True))) for end in beyond]
     return [
         rules.mix(own, reflect, mirrored, transmit, refracted)

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from reference_tracer.formulas import optics
 from reference_tracer.lanes.backend import Array, Backend, each
 from reference_tracer.lanes.floats import Nearest, Numbers
 from reference_tracer.lanes.tables import Tables
@@ -97,27 +98,28 @@ class Wavefront:
         _, total = self._refract(rays.v, surface)
         reflect, transmit = self._weights(rays.v, surface, total)
         reflects = hit & self.numbers.possible(reflect)
-        transmits = hit & self.numbers.possible(transmit)
-        cut = self.numbers.doubt(doubts, CRITICAL, total, hit & self._transmits(surface.row))
-        self.backend.evaluate((local, doubts, cut, *surface, hit, total, reflects, transmits))
+        transmits = hit & self.numbers.possible(optics.cut(total, transmit))
+        unsure = self.numbers.doubt(doubts, CRITICAL, total, hit & self._transmits(surface.row))
+        self.backend.evaluate((local, doubts, unsure, *surface, hit, total, reflects, transmits))
         if generation == self.rules.generations(self.scene.depth):
-            ended = self.rules.last(local, reflect, transmit, self.background())
+            beyond = self.background()
+            ended = self.rules.last(local, reflect, beyond, transmit, optics.cut(total, beyond))
             found = self.rules.seen(select_vec(hit, ended, local))
-            return self.numbers.bounded(found, doubts, generation), doubts if self.rules.last is last else cut
+            return self.numbers.bounded(found, doubts, generation), doubts if self.rules.last is last else unsure
 
         # Trace the rays whose weight is not 0, and bring their colours back to where they came from
         up, down = self.backend.compress(reflects), self.backend.compress(transmits)
         mirrored, refracted = self.backend.width(up), self.backend.width(down)
         reflected = transmitted = each(local, lambda array: self.backend.zeros(array))
-        passed_on = cut
+        passed_on = unsure
         if mirrored + refracted > 0:
             colour, child_doubts = self.trace(self._children(rays, surface, up, down), generation + 1)
             lanes = self.backend.width(surface.row)
             to_up = self.backend.positions(lanes, up, 0)
             to_down = self.backend.positions(lanes, down, mirrored)
             reflected = self._back(colour, to_up)
-            transmitted = self._back(colour, to_down)
-            passed_on = self.numbers.join(cut, self._back(child_doubts, to_up), self._back(child_doubts, to_down))
+            transmitted = optics.cut(total, self._back(colour, to_down))
+            passed_on = self.numbers.join(unsure, self._back(child_doubts, to_up), self._back(child_doubts, to_down))
 
         # Weigh the branches; a ray without any keeps its local colour
         reflect, transmit = self._weights(rays.v, surface, total)
