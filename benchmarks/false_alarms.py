@@ -36,8 +36,8 @@ from scenes.text import to_text
 EXAMPLE = Path(__file__).parents[1] / "examples" / "cpp_lecture" / "tracer.cpp"
 CPP = {
     "C++ float32": ("float32", ()),
-    "C++ float32, epsilon 7e-4": ("float32", ("-DEPSILON=7e-4",)),
-    "C++ float64": ("float64", ("-DREAL=double", "-DEPSILON=1e-7")),
+    "C++ float32, epsilon 1.5e-3": ("float32", ("-DEPSILON=1.5e-3",)),
+    "C++ float64": ("float64", ("-DREAL=double", "-DEPSILON=1e-6")),
 }
 NO_ANSWER = "slide"
 

@@ -21,7 +21,7 @@ from oracles import truth as truths
 from oracles.truth import Truth
 from reference_tracer import dialects
 from reference_tracer.dialects import SCENE_MODEL, Dialect
-from scenes.disk import write_whole
+from scenes.disk import read_bounded, write_whole
 from scenes.model import Scene
 
 FOLDER_VARIABLE = "RAYCHECK_CACHE"
@@ -71,7 +71,7 @@ def _code() -> str:
 def _read(path: Path, scene: Scene, precision: str) -> Truth | None:
     shape = (scene.image.height, scene.image.width)
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with np.load(io.BytesIO(read_bounded(path, MOST_BYTES)), allow_pickle=False) as stored:
             pixels, tolerance, doubts = stored["pixels"], stored["tolerance"], stored["doubts"]
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
@@ -89,12 +89,15 @@ def _write(path: Path, found: Truth) -> None:
 
 
 def _make_room(place: Path) -> None:
-    """Remove the oldest truths while all together are too large."""
-    kept = sorted((entry.stat().st_mtime, entry.stat().st_size, entry.path) for entry in os.scandir(place))
-    total = sum(size for _, size, _ in kept)
-    for _, size, path in kept:
+    """Remove the oldest truths while all together are too large; others may be at the same."""
+    found = []
+    for path in place.iterdir():
+        with contextlib.suppress(OSError):
+            told = path.stat()
+            found.append((told.st_mtime, told.st_size, path))
+    total = sum(size for _, size, _ in found)
+    for _, size, path in sorted(found):
         if total <= MOST_BYTES:
             break
-        with contextlib.suppress(OSError):
-            os.unlink(path)
+        path.unlink(missing_ok=True)
         total -= size
