@@ -91,6 +91,10 @@ class _Search:
         """How many pictures' worth of pixels are inside."""
         return sum(self.share(exhibit, convention) for exhibit in exhibits)
 
+    def right(self, convention: Convention) -> int:
+        """How many pictures have all their pixels inside."""
+        return sum(self.share(exhibit, convention) == 1.0 for exhibit in self.exhibits)
+
     def _predicted(self, exhibit: Exhibit, convention: Convention) -> Reals:
         scene = exhibit.scene
         convention = replace(convention, dialect=_asked(scene, convention.dialect))
@@ -202,15 +206,15 @@ def _best(
 
 
 def _needed(search: _Search, found: Convention, start: Convention) -> Convention:
-    """Without the choices whose loss makes no picture worse."""
-    most = search.score(search.exhibits, found)
+    """Without the choices whose loss makes no right picture wrong: what only shifts a fault is no convention."""
+    most = search.right(found)
     for key in CHOICES:
         less = replace(found, dialect=replace(found.dialect, **{key: getattr(start.dialect, key)}))
-        if less != found and search.score(search.exhibits, less) >= most:
+        if less != found and search.right(less) >= most:
             found = less
     for field in fields(Slip):
         less = replace(found, slip=replace(found.slip, **{field.name: ""}))
-        if less != found and search.score(search.exhibits, less) >= most:
+        if less != found and search.right(less) >= most:
             found = less
     return found
 
