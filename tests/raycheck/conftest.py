@@ -15,6 +15,9 @@ from reports.results import Results
 
 PFM = """
 import struct, sys
+
+# Who starts the tests in the background has interrupts ignored, and so would their children
+signal.signal(signal.SIGINT, signal.default_int_handler)
 def write(path, width, height, value=0.0):
     with open(path, "wb") as f:
         f.write(b"PF\\n%d %d\\n-1.0\\n" % (width, height))
