@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,11 +14,11 @@ from raycheck.cli import main
 from reports import results
 from reports.results import Results
 
-PFM = """
-import struct, sys
-
 # Who starts the tests in the background has interrupts ignored, and so would their children
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+PFM = """
+import struct, sys
 def write(path, width, height, value=0.0):
     with open(path, "wb") as f:
         f.write(b"PF\\n%d %d\\n-1.0\\n" % (width, height))
