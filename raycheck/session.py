@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import shlex
 import sys
+import tempfile
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -138,9 +139,8 @@ def make_folder(folder: Path) -> None:
     """Create the report's folder; raise UsageError if that cannot be."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".raycheck-probe"
-        probe.touch()
-        probe.unlink()
+        with tempfile.TemporaryFile(dir=folder):  # a name of its own: other processes may try the same folder
+            pass
     except OSError as error:
         raise UsageError(f"{folder}: {error.strerror}", WRITABLE) from None
 

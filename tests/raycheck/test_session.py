@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import pytest
 
 import reports
 import scenes.catalogue
+from raycheck import session
 from raycheck.subjects.command import CommandSubject
 from reports import results
 from reports.results import Results
@@ -246,3 +248,10 @@ def test_a_command_subject_fills_in_no_placeholder_of_a_placeholder() -> None:
     words = subject.arguments(rung("background").scene(), Path("/s"), Path("/i"), 3)
     scene = rung("background").scene()
     assert words == ["a", "/s/i", str(scene.image.width), str(scene.image.height), "3"]
+
+
+def test_processes_that_make_the_same_folder_do_not_stumble_over_one_another(tmp_path: Path) -> None:
+    folder = tmp_path / "shared"
+    with ThreadPoolExecutor(8) as pool:  # raises what any of them raised
+        list(pool.map(lambda _: session.make_folder(folder), range(800)))
+    assert not list(folder.iterdir())
