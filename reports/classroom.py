@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from oracles.verdict import Frozen
-from reports import page, plain, platforms, results
+from reports import class_chart, page, plain, platforms, results
 from reports.grades import WORDS, Graded
 from scenes.disk import write_whole
 
@@ -50,6 +50,7 @@ class Rate:
     earned: int
     lost: int
     excused: int
+    away: int = 0
 
     @property
     def asked(self) -> int:
@@ -146,6 +147,8 @@ def overview(classroom: Classroom) -> str:
             tiles=_tiles(clean),
             histogram=histogram(clean),
             rates=rates(clean),
+            chart=class_chart.scatter(dots(clean)),
+            faults=faults(clean),
             bands=[(band, words, counted[band]) for band, words in BANDS.items()],
             words=WORDS,
             policy=page.policy(STYLES, "class.js"),
@@ -166,6 +169,7 @@ def cleaned(graded: Graded) -> Graded:
         "name": plain.line(record.name),
         "tracer": plain.line(record.tracer),
         "message": plain.tail(record.message),
+        "faults": tuple(plain.line(fault) for fault in record.faults),
         "groups": groups,
     }
     hand = tuple(e.model_copy(update={"reason": plain.paragraph(e.reason)}) for e in graded.adjustments)
@@ -181,8 +185,23 @@ def rates(classroom: Classroom) -> list[Rate]:
                 # Hidden scenes have names that mean nothing to a class
                 name = group.name if line.check.startswith(HIDDEN) else line.check
                 counted.setdefault(name, Counter())[line.counts] += 1
-    found = [Rate(name, n["earned"], n["lost"], n["excused"]) for name, n in counted.items()]
-    return sorted(found, key=lambda rate: -rate.lost)
+    found = [Rate(name, n["earned"], n["lost"], n["excused"], n["left out"]) for name, n in counted.items()]
+    return sorted((rate for rate in found if rate.asked), key=lambda rate: -rate.lost)
+
+
+def dots(classroom: Classroom) -> list[class_chart.Dot]:
+    """The submissions that were timed."""
+    return [
+        class_chart.Dot(record.name, f"{STUDENTS}/{record.slug}/{page.FILE}", record.speed, record.outside)
+        for record in (graded.record for graded in classroom.graded)
+        if record.speed is not None and record.outside is not None
+    ]
+
+
+def faults(classroom: Classroom) -> list[tuple[str, int]]:
+    """The faults found in the class and in how many submissions, the most common first."""
+    counted = Counter(name for graded in classroom.graded for name in dict.fromkeys(graded.record.faults))
+    return counted.most_common()
 
 
 def histogram(classroom: Classroom) -> Histogram:

@@ -30,11 +30,11 @@ WORDS: dict[Outcome, str] = {
 
 
 class Line(Frozen):
-    """One check of a group: earned, lost, or excused because what it builds on failed."""
+    """One check of a group: earned, lost, excused because what it builds on failed, or left out as not its concern."""
 
     check: str
     verdict: Word
-    counts: Literal["earned", "lost", "excused"]
+    counts: Literal["earned", "lost", "excused", "left out"]
     why: str
 
 
@@ -48,8 +48,13 @@ class GroupScore(Frozen):
 
     @property
     def counted(self) -> int:
-        """Checks that count, excused ones left out."""
-        return sum(line.counts != "excused" for line in self.lines)
+        """Checks that count, excused ones not among them."""
+        return sum(line.counts in ("earned", "lost") for line in self.lines)
+
+    @property
+    def left_out(self) -> bool:
+        """Does the group not count for this tracer."""
+        return bool(self.lines) and all(line.counts == "left out" for line in self.lines)
 
     @property
     def passed(self) -> int:
@@ -58,6 +63,8 @@ class GroupScore(Frozen):
     @property
     def sum_in_words(self) -> str:
         """How the points came about."""
+        if self.left_out:
+            return "left out: not asked of this tracer"
         excused = len(self.lines) - self.counted
         away = f", {excused} not counted" if excused else ""
         if not self.counted:
@@ -74,7 +81,11 @@ class Adjustment(Frozen):
 
 
 class Record(Frozen):
-    """The grade of one submission; `key` names everything that it follows from."""
+    """The grade of one submission; `key` names everything that it follows from.
+
+    faults: names of the faults found in it; outside: mean share of wrong pixels in the pictures asked for, 1 where
+    none came; speed: times as fast as the reference tracer. None: not measured.
+    """
 
     schema_version: Literal[1] = 1
     name: str
@@ -84,10 +95,13 @@ class Record(Frozen):
     outcome: Outcome
     message: str = ""
     groups: tuple[GroupScore, ...]
+    faults: tuple[str, ...] = ()
+    outside: float | None = None
+    speed: float | None = None
 
     @property
     def points(self) -> float:
-        return round(sum(group.points for group in self.groups), 2)
+        return round(sum(group.points for group in self.groups if not group.left_out), 2)
 
     @property
     def earned(self) -> float:

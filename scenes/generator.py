@@ -4,6 +4,8 @@ The scenes stay where a tracer of fixed epsilon is right: things do not touch ea
 that no ray meets a second surface within an epsilon of its start, except inside a sphere near its rim.
 Equal seeds give equal scenes: Python's Mersenne Twister and `random()` are stable across versions
 (docs of `random`, "Notes on Reproducibility"), so all draws are made from that alone.
+
+`scenes.random_scenes` draws what this one must not: see there why they are two.
 """
 
 from __future__ import annotations

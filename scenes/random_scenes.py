@@ -1,4 +1,11 @@
-"""Scenes drawn by chance, for what no designed scene would think of."""
+"""Scenes drawn by chance, for what no designed scene would think of.
+
+There are two generators since they want opposite things. This one serves our own tests: things overlap, surfaces cross
+the eye, mirrors face each other a hair apart, numbers have all their digits, and whatever comes of it must be enclosed.
+`scenes.generator` serves grading, where a scene may not fail a right tracer of a fixed epsilon: things keep apart,
+light is bright enough to tell, numbers are exact in float32. A restriction of one is the point of the other, so they
+share no draw, and either one's scenes are pinned by their seeds.
+"""
 
 from __future__ import annotations
 

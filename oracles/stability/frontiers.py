@@ -8,8 +8,8 @@ frontier lies at it or beyond.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, cast
 
 import numpy as np
 from numpy.random import Generator
@@ -49,10 +49,39 @@ class _Scan:
     failing: Callable[[float], list[bool]]
 
 
+def span(question: str, precision: Precision) -> tuple[float, float]:
+    """The first and the last value that a scan asks about, from easy to hard."""
+    u = ROUNDOFF[precision]
+    far = (1.5, 0.5 / u)  # beyond 1/u the rounding of v moves the ray by radii
+    spans = {DISTANCE.name: far, DECISION.name: far, HEIGHT.name: (1.0, 2.0 * u), BENDING.name: (1.0, u)}
+    return spans[question]
+
+
 def sphere_frontiers(probes: Sequence[SphereProbe], precision: Precision, rng: Generator) -> list[Frontier]:
     """The three frontiers of ways to meet a sphere; all of one precision."""
-    dtype, u = DTYPES[precision], ROUNDOFF[precision]
-    far = _steps(1.5, 0.5 / u)  # beyond 1/u the rounding of v moves the ray by radii
+    names = [p.name for p in probes]
+    return [found for scan in _sphere_scans(probes, precision, rng) for found in _walk(scan, names, precision)]
+
+
+def refract_frontiers(probes: Sequence[RefractProbe], precision: Precision, rng: Generator) -> list[Frontier]:
+    """How near the normal the bend of a ray is still right: |Δt| against sinθ2."""
+    return _walk(_refract_scan(probes, precision, rng), [p.name for p in probes], precision)
+
+
+def until(question: str, limit: float, probe: SphereProbe | RefractProbe, rng: Generator) -> Frontier:
+    """The frontier of one probe, looked for as far as the limit, itself among the values; open: it holds that far."""
+    if question == BENDING.name:
+        scan = _refract_scan((cast(RefractProbe, probe),), probe.precision, rng)
+    else:
+        scans = _sphere_scans((cast(SphereProbe, probe),), probe.precision, rng)
+        scan = next(scan for scan in scans if scan.question.name == question)
+    easier = scan.values < limit if scan.question.farther == "up" else scan.values > limit
+    (found,) = _walk(replace(scan, values=np.append(scan.values[easier], limit)), [probe.name], probe.precision)
+    return found
+
+
+def _sphere_scans(probes: Sequence[SphereProbe], precision: Precision, rng: Generator) -> tuple[_Scan, ...]:
+    dtype = DTYPES[precision]
 
     def too_wrong(rays: strata.Rays, relative: bool) -> list[bool]:
         true = truth.distances(rays.o, rays.v, rays.c, rays.r)
@@ -66,17 +95,16 @@ def sphere_frontiers(probes: Sequence[SphereProbe], precision: Precision, rng: G
         answers = [probe.sphere(rays.o, rays.v, rays.c, rays.r) for probe in probes]
         return [bool(np.any(np.isfinite(got) != meets)) for got in answers]
 
-    scans = (
+    far, near = _steps(*span(DISTANCE.name, precision)), _steps(*span(HEIGHT.name, precision))
+    return (
         _Scan(DISTANCE, far, lambda D: too_wrong(strata.inside_the_disc(rng, RAYS, D, dtype), False)),
         _Scan(DECISION, far, undecided),
-        _Scan(HEIGHT, _steps(1.0, 2.0 * u), lambda h: too_wrong(strata.above(rng, RAYS, h, 1.0, dtype), True)),
+        _Scan(HEIGHT, near, lambda h: too_wrong(strata.above(rng, RAYS, h, 1.0, dtype), True)),
     )
-    return [found for scan in scans for found in _walk(scan, [p.name for p in probes], precision)]
 
 
-def refract_frontiers(probes: Sequence[RefractProbe], precision: Precision, rng: Generator) -> list[Frontier]:
-    """How near the normal the bend of a ray is still right: |Δt| against sinθ2."""
-    dtype, u = DTYPES[precision], ROUNDOFF[precision]
+def _refract_scan(probes: Sequence[RefractProbe], precision: Precision, rng: Generator) -> _Scan:
+    dtype = DTYPES[precision]
 
     def too_wrong(angle: float) -> list[bool]:
         inputs = strata.bends(rng, np.full(RAYS, angle), 1.5, False, dtype)
@@ -85,8 +113,7 @@ def refract_frontiers(probes: Sequence[RefractProbe], precision: Precision, rng:
         answers = [probe.refract(inputs.v, inputs.n, inputs.index) for probe in probes]
         return [not bool(np.all(true.error(got) <= GOOD * bend)) for got in answers]
 
-    scan = _Scan(BENDING, _steps(1.0, u), too_wrong)
-    return _walk(scan, [p.name for p in probes], precision)
+    return _Scan(BENDING, _steps(*span(BENDING.name, precision)), too_wrong)
 
 
 def _steps(first: float, last: float) -> NDArray[np.float64]:

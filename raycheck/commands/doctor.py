@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 from raycheck.errors import CONFORMS
 from raycheck.machine import machine
+from raycheck.sandbox import jail
 from reference_tracer import llvm
+
+NO_SANDBOX = "no sandbox: `grade` and `check --sandbox` refuse"
 
 
 @dataclass(frozen=True)
@@ -40,9 +43,11 @@ def parts() -> Iterator[Part]:
     yield Part("libLLVM", path, f"no DrJit lanes, NumPy serves (unfit: {tried})", "apt-get install libllvm19")
     programs = (
         ("g++", "`raycheck demo` cannot build its examples", "apt-get install g++ make"),
-        ("bwrap", "no sandbox: `grade` and `check --sandbox` refuse", "apt-get install bubblewrap"),
+        *((name, NO_SANDBOX, f"apt-get install {package}") for name, package in jail.TOOLS.items()),
         ("chromium", "the report's browser test is skipped", "apt-get install chromium"),
         ("povray", "POV-Ray cannot be a peer", "apt-get install povray"),
     )
     for name, without, remedy in programs:
         yield Part(name, shutil.which(name), without, remedy)
+    reason = jail.inspect()
+    yield Part("sandbox", None if reason else "works", f"{reason}; `grade` refuses", "a kernel with user namespaces")

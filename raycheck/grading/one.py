@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import random
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from oracles.verdict import Pictures, Verdict
 from raycheck import VERSION, manifest, session
 from raycheck.errors import StartError, UsageError
+from raycheck.grading import speed
+from raycheck.grading.formulas import foreign_laws, law_verdicts, stability_verdicts
 from raycheck.grading.patience import Patience
 from raycheck.grading.rubric import Rubric
-from raycheck.grading.score import nothing, score
+from raycheck.grading.score import Evidence, nothing, score
 from raycheck.grading.submissions import Submission, take_in
 from raycheck.known import Known
 from raycheck.machine import machine
@@ -140,19 +143,24 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
     if arrived.root is None:
         raise _EndedError("refused", arrived.refused)
     subject = _subject(asked, arrived.root)
-    _prepare(subject)
-    hidden = asked.hidden
-    with workspace() as private:
+    patience = Patience(subject)
+    rubric, hidden = asked.rubric, asked.hidden
+    with workspace() as private, _beside_others(rubric):
+        _prepare(subject)
         try:
-            shown = _judged(subject, asked.rungs, asked.size, student)
-            secret = _judged(subject, hidden, None, student if _reveals(asked.rubric) else private)
+            shown = _judged(patience, asked.rungs, asked.size, student)
+            secret = _judged(patience, hidden, None, student if _reveals(rubric) else private)
+            told = secret if _reveals(rubric) else [veiled(verdict) for verdict in secret]
+            pictures = (*shown, *told)
+            first = next((v.message for v in pictures if v.verdict in BROKEN), "")
+            broken = bool(pictures) and all(verdict.verdict in BROKEN for verdict in pictures)
+            further = () if broken else _further(asked, subject, patience, shown, student)
         except StartError as error:
             raise _EndedError("start", str(error)) from None
-    told = secret if _reveals(asked.rubric) else [veiled(verdict) for verdict in secret]
-    verdicts = {verdict.check.removeprefix("image/"): verdict for verdict in (*shown, *told)}
-    _write_results(asked, subject, (*shown, *told), student)
-    broken = all(verdict.verdict in BROKEN for verdict in verdicts.values())
-    first = next((v.message for v in verdicts.values() if v.verdict in BROKEN), "")
+    timing = speed.Timing(None) if broken else _timing(asked, patience)
+    verdicts = (*pictures, *further, *speed.speed_verdicts(timing, () if broken else rubric.speeds))
+    _write_results(asked, subject, verdicts, student)
+    evidence = Evidence(_complete(rubric, verdicts), foreign=foreign_laws(subject, rubric.laws))
     return Record(
         name=submission.name,
         slug=submission.slug,
@@ -160,8 +168,48 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
         tracer=subject.name,
         outcome="protocol" if broken else "graded",
         message=first if broken else "",
-        groups=score(asked.rubric, verdicts, hidden),
+        groups=score(rubric, evidence, hidden),
+        outside=_outside((*shown, *secret)),
+        speed=timing.times,
     )
+
+
+def _beside_others(rubric: Rubric) -> contextlib.AbstractContextManager[None]:
+    """What must not run while another submission is timed; of no concern where nothing is timed."""
+    return speed.machine(alone=False) if rubric.speeds else contextlib.nullcontext()
+
+
+def _further(
+    asked: Asked, subject: CommandSubject, patience: Patience, shown: Sequence[Verdict], student: Path
+) -> list[Verdict]:
+    """Laws and stability; their seed follows from the run's, which it does not tell."""
+    rubric, seed = asked.rubric, _number(f"laws {asked.seed}") % 2**31
+    laws = law_verdicts(subject, patience, rubric.laws, seed, shown, student) if rubric.laws else []
+    holds = stability_verdicts(subject, rubric.reaches, seed) if rubric.reaches else ()
+    return [*laws, *holds]
+
+
+def _timing(asked: Asked, patience: Patience) -> speed.Timing:
+    if not asked.rubric.speeds:
+        return speed.Timing(None)
+    with speed.machine(alone=True):
+        return speed.timing(patience, speed.timed_scene(_number(f"timed {asked.seed}"), asked.size))
+
+
+def _complete(rubric: Rubric, verdicts: Iterable[Verdict]) -> dict[str, Verdict]:
+    """A verdict for each check that counts; what was not asked is blocked."""
+    found = {verdict.check: verdict for verdict in verdicts}
+    for group in rubric.group:
+        for check in group.checks:
+            message = "not asked, no usable picture came"
+            found.setdefault(check, Verdict(check=check, verdict="blocked", message=message))
+    return found
+
+
+def _outside(pictures: Sequence[Verdict]) -> float | None:
+    """Mean share of wrong pixels, all of a picture that did not come; None where nothing was judged by pixel."""
+    shares = [v.judged.outside / v.judged.pixels if v.judged else 1.0 for v in pictures if v.sampled is None]
+    return sum(shares) / len(shares) if shares else None
 
 
 def _subject(asked: Asked, root: Path) -> CommandSubject:
@@ -173,7 +221,7 @@ def _subject(asked: Asked, root: Path) -> CommandSubject:
             told = manifest.load(root)
         limits = asked.rubric.limits
         told = Manifest.model_validate(told.model_dump() | {"timeout": min(told.timeout, limits.render)})
-        return CommandSubject(root, told, "", asked.room, limits.build)
+        return CommandSubject(root, told, "", asked.room, limits.build, limits.probe)
     except UsageError as error:
         raise _EndedError("manifest", str(error).replace(f"{root}/", "")) from None
 
@@ -185,13 +233,11 @@ def _prepare(subject: CommandSubject) -> None:
         raise _EndedError("build", str(error)) from None
 
 
-def _judged(
-    subject: CommandSubject, rungs: Sequence[Rung], size: tuple[int, int] | None, folder: Path
-) -> list[Verdict]:
+def _judged(subject: Patience, rungs: Sequence[Rung], size: tuple[int, int] | None, folder: Path) -> list[Verdict]:
     """Every rung is asked, also where one it builds on failed: what passes is earned."""
     shape = f" --size {size[0]}x{size[1]}" if size else ""
     plan = Plan(rungs, size, 0, False, Known({}), f"raycheck check .{shape} --scenes {{scene}}")
-    return list(Hearing(Patience(subject), plan, folder).verdicts())
+    return list(Hearing(subject, plan, folder).verdicts())
 
 
 def _reveals(rubric: Rubric) -> bool:

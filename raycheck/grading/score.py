@@ -3,12 +3,13 @@
 A check that passes is earned, one that fails is lost, unless a rung it builds on failed: then it is
 excused, so that one fault is not charged again by everything that stands on it. A group is worth
 points × earned / (earned + lost), and nothing where all its checks are excused: what could not be shown
-earns nothing.
+earns nothing. What does not concern a tracer is left out; a group of which all is left out does not count.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from decimal import ROUND_HALF_UP, Decimal
 from fractions import Fraction
 
@@ -21,11 +22,25 @@ HIDDEN = "Hidden scenes"
 CENT = Decimal("0.01")
 
 
-def score(rubric: Rubric, verdicts: Mapping[str, Verdict], hidden: Iterable[Rung]) -> tuple[GroupScore, ...]:
-    """The rubric's groups, with the verdicts (by name of the rung) that they rest on."""
-    groups = [_group(group.name, group.points, group.rungs, verdicts) for group in rubric.group]
+@dataclass(frozen=True)
+class Evidence:
+    """What a score rests on: verdicts by check.
+
+    excused: failed checks that are not charged, and why, for example because a fault that is charged elsewhere
+    explains them; foreign: checks that say nothing about this tracer, and why.
+    """
+
+    verdicts: Mapping[str, Verdict]
+    excused: Mapping[str, str] = field(default_factory=dict)
+    foreign: Mapping[str, str] = field(default_factory=dict)
+
+
+def score(rubric: Rubric, evidence: Evidence, hidden: Iterable[Rung]) -> tuple[GroupScore, ...]:
+    """The rubric's groups, with the verdicts that they rest on."""
+    groups = [_group(g.name, g.points, g.checks, evidence, g.unsupported) for g in rubric.group]
     if rubric.hidden:
-        groups.append(_group(HIDDEN, rubric.hidden.points, [rung.name for rung in hidden], verdicts))
+        checks = [f"image/{rung.name}" for rung in hidden]
+        groups.append(_group(HIDDEN, rubric.hidden.points, checks, evidence, "lost"))
     return tuple(groups)
 
 
@@ -37,22 +52,38 @@ def nothing(rubric: Rubric) -> tuple[GroupScore, ...]:
     return tuple(groups)
 
 
-def _group(name: str, points: float, rungs: Iterable[str], verdicts: Mapping[str, Verdict]) -> GroupScore:
-    lines = tuple(_line(verdicts[rung], verdicts) for rung in rungs)
+def _group(name: str, points: float, checks: Iterable[str], evidence: Evidence, unsupported: str) -> GroupScore:
+    lines = tuple(_line(check, evidence, unsupported) for check in checks)
     earned = sum(line.counts == "earned" for line in lines)
-    counted = sum(line.counts != "excused" for line in lines)
+    counted = sum(line.counts in ("earned", "lost") for line in lines)
     worth = Fraction(points) * earned / counted if counted else Fraction(0)
     return GroupScore(name=name, points=points, earned=_cents(worth), lines=lines)
 
 
-def _line(verdict: Verdict, verdicts: Mapping[str, Verdict]) -> Line:
+def _line(check: str, evidence: Evidence, unsupported: str) -> Line:
+    verdict = evidence.verdicts[check]
     if verdict.verdict in USABLE:
-        return Line(check=verdict.check, verdict=verdict.verdict, counts="earned", why=verdict.message)
-    below = [name for name in verdict.requires if name in verdicts and verdicts[name].verdict not in USABLE]
-    if below and verdict.verdict != "unsupported":
-        why = f"builds on image/{below[0]}, which is {verdicts[below[0]].verdict}: not charged again"
-        return Line(check=verdict.check, verdict=verdict.verdict, counts="excused", why=why)
-    return Line(check=verdict.check, verdict=verdict.verdict, counts="lost", why=verdict.message)
+        return Line(check=check, verdict=verdict.verdict, counts="earned", why=verdict.message)
+    if check in evidence.foreign:
+        return Line(check=check, verdict=verdict.verdict, counts="left out", why=evidence.foreign[check])
+    if verdict.verdict == "unsupported":
+        counts = "left out" if unsupported == "left out" else "lost"
+        return Line(check=check, verdict=verdict.verdict, counts=counts, why=verdict.message)
+    reason = evidence.excused.get(check) or _below(verdict, evidence.verdicts)
+    if reason:
+        return Line(check=check, verdict=verdict.verdict, counts="excused", why=reason)
+    return Line(check=check, verdict=verdict.verdict, counts="lost", why=verdict.message)
+
+
+def _below(verdict: Verdict, verdicts: Mapping[str, Verdict]) -> str:
+    """Why a failure is not charged again; empty where it is charged."""
+    if verdict.verdict == "blocked":
+        return f"{verdict.message}: not charged again"
+    for name in verdict.requires:
+        below = verdicts.get(f"image/{name}")
+        if below is not None and below.verdict not in USABLE:
+            return f"builds on {below.check}, which is {below.verdict}: not charged again"
+    return ""
 
 
 def _cents(x: Fraction) -> float:

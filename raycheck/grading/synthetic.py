@@ -138,3 +138,56 @@ def _edited(text: str, member: Member) -> str:
         if not hits:
             raise ValueError(f"{member.language}: nothing to edit for the fault {fault.name}")
     return text
+
+
+RUBRIC = """
+name = "small"
+[[group]]
+name = "rays"
+points = 8
+rungs = ["pixel-corner", "pixel-centre", "off-centre-camera"]
+[[group]]
+name = "light"
+points = 12
+rungs = ["phong-10", "attenuation-inverse-square", "shadow-hard"]
+[[group]]
+name = "branches"
+points = 20
+rungs = ["mirror-imperfect", "facing-mirrors-3", "glass-sphere"]
+"""
+"""Of which every fault touches some and none all."""
+
+QUICK_RUBRIC = """
+name = "quick"
+[[group]]
+name = "a"
+points = 3
+rungs = ["background"]
+[hidden]
+points = 2
+scenes = 1
+[limits]
+render = 20
+"""
+_QUICK = """
+import struct, sys
+words = {line.split()[0]: line.split()[1:] for line in open(sys.argv[1]) if line.strip()}
+width, height = int(words["image"][0]), int(words["image"][1])
+level = [float(w) for w in words["background"]]
+with open(sys.argv[2], "wb") as f:
+    f.write(b"PF\\n%d %d\\n-1.0\\n" % (width, height))
+    f.write(struct.pack("<3f", *level) * (width * height))
+"""
+
+
+def write_quick(folder: Path, count: int) -> Path:
+    """Submissions that are quickly done, every third of them wrong, and the rubric for them beside; their folder."""
+    (folder / "rubric.toml").write_text(QUICK_RUBRIC, "utf-8")
+    for k in range(count):
+        one = folder / "class" / f"student-{k:02}"
+        one.mkdir(parents=True)
+        text = _QUICK if k % 3 else _QUICK.replace("*level", "*[1.0, 2.0, 3.0]")
+        (one / "tracer.py").write_text(text, "utf-8")
+        render = 'render = ["python3", "-S", "tracer.py", "{scene}", "{image}"]'
+        (one / "raycheck.toml").write_text(f'[tracer]\nname = "{k}"\n{render}\n', "utf-8")
+    return folder / "class"

@@ -15,6 +15,13 @@ from raycheck.probes.prober import Prober, Reals
 from reference_tracer.operations import ANSWERS
 
 
+@dataclass
+class UnansweredError(StartError):
+    """A tracer gave no usable answer; word: that of its verdict."""
+
+    word: str = "error"
+
+
 @dataclass(frozen=True)
 class ArrayProbe:
     """A tracer's answers about spheres and refraction, of its precision."""
@@ -35,7 +42,7 @@ class ArrayProbe:
         try:
             return self._answers(operation, rows.astype(np.float64))
         except NoAnswerError as error:
-            raise StartError(f"{self.name}: {error}") from None
+            raise UnansweredError(f"{self.name}: {error}", word=error.word) from None
 
     def _answers(self, operation: str, rows: Reals) -> Reals:
         """All answers; where formulas fail, tracers print `nan` or `inf`, which must not end the measurement."""

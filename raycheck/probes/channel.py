@@ -7,9 +7,11 @@ waits for the other with full pipes, and a round trip is paid once a batch.
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import selectors
 import subprocess
+import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,6 +25,8 @@ FILES = 2**24
 CHUNK = 2**18
 GRACE = 1.0
 """Seconds that a process which closed its output has to end, so that its end can be told."""
+
+SPENT = "its answers took longer than all of them together may"
 
 
 class BrokenOffError(NoAnswerError):
@@ -50,18 +54,37 @@ class Channel:
             os.set_blocking(end, False)
         self.said = b""
         self.unread = b""
+        self.breach = ""
+        self.closed = threading.Event()
+        self.watchman = threading.Thread(target=self._watch, daemon=True)
+        if hold is not process.GROUP:  # which limits nothing that has to be watched
+            self.watchman.start()
 
     def close(self) -> None:
         """End the process."""
+        self.closed.set()
+        if self.watchman.is_alive():
+            self.watchman.join()
         process.stop(self.child, self.hold)
 
-    def exchange(self, requests: bytes, count: int) -> list[bytes]:
-        """The answers to `count` lines of requests; raise BrokenOffError where they do not come."""
+    def _watch(self) -> None:
+        """End the process once it passes a limit of its hold, also while it is asked nothing."""
+        while not self.closed.wait(process.LOOK):
+            if breach := self.hold.breach(self.child.pid):
+                self.breach = breach
+                self.hold.end(self.child)
+                return
+
+    def exchange(self, requests: bytes, count: int, until: float = math.inf) -> list[bytes]:
+        """The answers to `count` lines of requests; raise BrokenOffError where they do not come.
+
+        until: when the last must have come, on the monotonic clock.
+        """
         into, out, err = self.ends
         self._nothing_waits()
         left = memoryview(requests)
         answers: list[bytes] = []
-        deadline = time.monotonic() + self.patience
+        deadline = min(until, time.monotonic() + self.patience)
         with selectors.DefaultSelector() as selector:
             selector.register(into, selectors.EVENT_WRITE)
             selector.register(out, selectors.EVENT_READ)
@@ -72,9 +95,9 @@ class Channel:
                     selector.unregister(err)
                 if out in ready:
                     answers += self._read(len(answers))
-                    deadline = time.monotonic() + self.patience
-                elif time.monotonic() >= deadline:
-                    raise self._silent(len(answers))
+                    deadline = min(until, time.monotonic() + self.patience)
+                if len(answers) < count and (now := time.monotonic()) >= deadline:
+                    raise self._silent(len(answers), now >= until)
                 if into in ready:
                     left = self._write(left)
                     if not left:
@@ -119,7 +142,9 @@ class Channel:
         self.said = (self.said + chunk)[-4 * process.TAIL :]
         return bool(chunk)
 
-    def _silent(self, answered: int) -> BrokenOffError:
+    def _silent(self, answered: int, spent: bool) -> BrokenOffError:
+        if spent:
+            return BrokenOffError("timeout", f"{SPENT}{self._tail()}", answered)
         hint = "; answers must be flushed line by line" if self.unread or not answered else ""
         return BrokenOffError("timeout", f"no answer within {self.patience:g} s{hint}{self._tail()}", answered)
 
@@ -129,11 +154,17 @@ class Channel:
             code = self.child.wait(GRACE)
         except subprocess.TimeoutExpired:
             return BrokenOffError("invalid", f"the probe closed its output{self._tail()}", answered)
-        if code < 0:
-            return BrokenOffError(
-                "crash", f"the probe was killed by {process.signal_name(-code)}{self._tail()}", answered
-            )
-        return BrokenOffError("error", f"the probe ended with exit status {code}{self._tail()}", answered)
+        breach = self.breach or self.hold.breach(self.child.pid)
+        if breach:
+            return BrokenOffError("invalid", f"used more than its limit of {breach} and was stopped", answered)
+        tail = self._tail()
+        try:
+            how, number = self.hold.outcome(code, self.said)
+        except OSError as error:
+            return BrokenOffError("error", f"the probe cannot be started: {error.strerror}", answered)
+        if how == "signal":
+            return BrokenOffError("crash", f"the probe was killed by {process.signal_name(number)}{tail}", answered)
+        return BrokenOffError("error", f"the probe ended with exit status {number}{tail}", answered)
 
     def _tail(self) -> str:
         """The last line on stderr, for a message."""

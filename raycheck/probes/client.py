@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shlex
+import time
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import numpy as np
 from oracles.laws import NoAnswerError
 from oracles.laws.cases import Question
 from raycheck.probes import wire
-from raycheck.probes.channel import BrokenOffError, Channel
+from raycheck.probes.channel import SPENT, BrokenOffError, Channel
 from raycheck.probes.prober import Reals
 from raycheck.sandbox.room import OPEN, Room
 from raycheck.workspace import workspace
@@ -37,15 +39,19 @@ class ProbeClient:
         precision: str,
         patience: float = PATIENCE,
         room: Room = OPEN,
+        budget: float = math.inf,
     ) -> None:
-        """Shown: the folder as the user named it; precision: what the manifest says; room: where it runs."""
+        """Shown: the folder as the user named it; precision: what the manifest says; room: where it runs.
+
+        budget: seconds that all its answers together may take.
+        """
         self.command, self.folder, self.shown = command, folder, shown
         self.precision, self.patience = precision, patience
         self.starts = 0
         self.channel: Channel | None = None
         self.scene: Scene | None = None
         self.operations: frozenset[str] = frozenset()
-        self.room = room
+        self.room, self.budget = room, budget
         self.held = ExitStack()
         self.files = ExitStack()
         self.papers: Path | None = None
@@ -53,6 +59,8 @@ class ProbeClient:
     def open(self) -> frozenset[str]:
         """Start and greet it, if it is not running; the operations it answers."""
         if self.channel is None:
+            if self.budget <= 0.0:
+                raise NoAnswerError("timeout", f"not asked: {SPENT}")
             if self.starts > RESTARTS:
                 raise NoAnswerError("error", f"the probe failed {self.starts} times and is not started again")
             self.starts += 1
@@ -109,11 +117,14 @@ class ProbeClient:
 
     def _say(self, requests: bytes, count: int) -> list[bytes]:
         """One exchange; after a failure the process is gone."""
+        begin = time.monotonic()
         try:
-            return self._running().exchange(requests, count)
+            return self._running().exchange(requests, count, begin + self.budget)
         except BaseException:
             self._drop()
             raise
+        finally:
+            self.budget -= time.monotonic() - begin
 
     def _show(self, scene: Scene) -> None:
         """Hand over the scene that the next questions are about."""

@@ -16,7 +16,12 @@ def prober_of(subject: Subject) -> Prober | None:
     match subject:
         case CommandSubject() if subject.manifest.probe is not None:
             return ProbeClient(
-                subject.manifest.probe, subject.folder, subject.spec, subject.precision, room=subject.room
+                subject.manifest.probe,
+                subject.folder,
+                subject.spec,
+                subject.precision,
+                room=subject.room,
+                budget=subject.probe_budget,
             )
         case ReferenceSubject():
             return ReferenceProber(subject.arithmetic, subject.bits)

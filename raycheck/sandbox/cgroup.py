@@ -12,11 +12,14 @@ import secrets
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
+from raycheck import leftovers
 from raycheck.sandbox.limits import MIB, Limits
 
 ROOT = Path("/sys/fs/cgroup")
+PREFIX = "raycheck-"
 
 
 @dataclass(frozen=True)
@@ -42,16 +45,22 @@ class Cgroup:
 @contextlib.contextmanager
 def cgroup(limits: Limits, root: Path = ROOT) -> Iterator[Cgroup | None]:
     """A group of these limits, removed afterwards; None where none can be made."""
-    made: list[Path] = []
-    try:
-        yield _made(limits, root, made)
-    finally:
-        for folder in made:
-            _remove(folder)
+    _sweep(root)
+    while True:
+        made: list[Path] = []
+        with contextlib.ExitStack() as held:
+            try:
+                group = _made(limits, root, made)
+                if all(held.enter_context(leftovers.claimed(folder)) for folder in made):
+                    yield group
+                    return
+            finally:
+                for folder in made:
+                    _remove(folder)
 
 
 def _made(limits: Limits, root: Path, made: list[Path]) -> Cgroup | None:
-    name = f"raycheck-{os.getpid()}-{secrets.token_hex(4)}"
+    name = f"{PREFIX}{os.getpid()}-{secrets.token_hex(4)}"
     memory, tasks = str(limits.memory * MIB), str(limits.processes)
     try:
         if (root / "cgroup.controllers").exists():
@@ -97,6 +106,19 @@ def _counted(path: Path, name: str) -> bool:
     except OSError:
         return False
     return any(line.split()[0] == name and line.split()[1] != "0" for line in lines if line.count(" ") == 1)
+
+
+@cache
+def _sweep(root: Path) -> None:
+    """Once a process: the groups that killed ones left behind."""
+    for place in (root, root / "memory", root / "pids"):
+        leftovers.sweep(place, PREFIX, _discard)
+
+
+def _discard(folder: Path) -> None:
+    """A group that still has processes stays."""
+    with contextlib.suppress(OSError):
+        folder.rmdir()
 
 
 def _remove(folder: Path) -> None:

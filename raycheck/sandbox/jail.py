@@ -26,7 +26,7 @@ from pathlib import Path
 
 from raycheck.errors import CANNOT_START, RaycheckError
 from raycheck.process import Hold
-from raycheck.sandbox import census, toolchains
+from raycheck.sandbox import census, go_cache, toolchains
 from raycheck.sandbox.cgroup import Cgroup, cgroup
 from raycheck.sandbox.disk import used
 from raycheck.sandbox.limits import MIB, Limits
@@ -38,7 +38,9 @@ SIGNALLED = 128
 DISK_LOOK = 0.25
 """Seconds between two looks at the disk."""
 
-_SYSTEM = ("/usr",)
+TOOLS = {"bwrap": "bubblewrap", "prlimit": "util-linux", "setpriv": "util-linux", "sh": "dash"}
+"""The programs that a jail is made of, each with the package that has it."""
+
 _LINKED = ("bin", "sbin", "lib", "lib32", "lib64", "libx32")
 _SETTINGS = ("ld.so.cache", "ld.so.conf", "ld.so.conf.d", "alternatives", "localtime")
 _ENTER = 'for door; do shift; [ "$door" = -- ] && exec "$@"; echo 0 > "$door" || exit 1; done'
@@ -68,8 +70,10 @@ class Jail:
         _demand()  # again: another machine may have sent it
         for folder in write:
             give(folder)
+        library = go_cache.wanted(write)
+        shown = (*toolchains.folders(), *((library,) if library else ()), *read)
         with cgroup(self.limits) as group:
-            yield _Cell(self.limits, (*toolchains.folders(), *read), tuple(write), group)
+            yield _Cell(self.limits, shown, tuple(write), group, library)
 
 
 @dataclass
@@ -80,6 +84,7 @@ class _Cell:
     read: tuple[Path, ...]
     write: tuple[Path, ...]
     group: Cgroup | None
+    library: Path | None = None
     _looked: float = 0.0
 
     def words(self, command: Sequence[str], cwd: Path, file_limit: int) -> list[str]:
@@ -98,7 +103,7 @@ class _Cell:
     def _walls(self) -> list[str]:
         walls = ["bwrap", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try"]
         walls += ["--hostname", "jail", "--die-with-parent", "--new-session", "--cap-drop", "ALL", "--clearenv"]
-        for name, value in _environment().items():
+        for name, value in _environment(self.library).items():
             walls += ["--setenv", name, value]
         walls += _system()
         walls += ["--proc", "/proc", "--dev", "/dev"]
@@ -176,8 +181,9 @@ def give(folder: Path) -> None:
             os.chown(os.path.join(here, name), NOBODY, NOBODY, follow_symlinks=False)
 
 
-def _environment() -> dict[str, str]:
-    return {"PATH": toolchains.search_path(), "HOME": "/tmp", "TMPDIR": "/tmp", "LANG": "C.UTF-8"}  # noqa: S108
+def _environment(library: Path | None) -> dict[str, str]:
+    own = {"PATH": toolchains.search_path(), "HOME": "/tmp", "TMPDIR": "/tmp", "LANG": "C.UTF-8"}  # noqa: S108
+    return own | ({"GOCACHE": str(library)} if library else {})
 
 
 @cache
@@ -214,8 +220,13 @@ def _become(cwd: Path) -> list[str]:
 
 @cache
 def missing() -> str:
+    """Why there is no sandbox on this machine, found out once; empty if there is one."""
+    return inspect()
+
+
+def inspect() -> str:
     """Why there is no sandbox on this machine; empty if there is one."""
-    for name in ("bwrap", "prlimit", "setpriv", "sh"):
+    for name in TOOLS:
         if shutil.which(name) is None:
             return f"{name} is not installed"
     cell = _Cell(Limits(), (), (), None)

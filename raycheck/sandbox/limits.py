@@ -16,7 +16,8 @@ class Limits(BaseModel):
 
     memory: kept in memory, its temporary files included where the system counts them; processes: with
     their threads; temporary: files in /tmp and /dev/shm, each; disk: files in its own folder; cpu: processor
-    time of any one process; build, render: wall time (a manifest may ask for less to render).
+    time of any one process; build, render: wall time (a manifest may ask for less to render); probe: wall time of
+    all answers of a probe together.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -28,3 +29,4 @@ class Limits(BaseModel):
     cpu: Amount = 600
     build: Duration = 120.0
     render: Duration = 30.0
+    probe: Duration = 120.0

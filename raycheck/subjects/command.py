@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,6 +32,7 @@ class CommandSubject:
     spec: str
     room: Room = OPEN
     build_timeout: float = BUILD_TIMEOUT
+    probe_budget: float = math.inf
     in_process: bool = False
 
     def __post_init__(self) -> None:

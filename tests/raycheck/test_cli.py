@@ -14,6 +14,7 @@ import pytest
 import raycheck.cli
 from raycheck import VERSION, suite
 from raycheck.commands import scenes as scenes_command
+from raycheck.sandbox import jail
 from reports import results
 from scenes.catalogue import ladder
 
@@ -274,6 +275,10 @@ def test_doctor_names_the_machine_and_a_remedy_for_what_is_missing(
     assert told.code == 0
     assert "povray    missing: " in told.out
     assert "apt-get install povray" in told.out
+    for tool, package in jail.TOOLS.items():
+        assert f"{tool:<9} missing: no sandbox" in told.out
+        assert f"apt-get install {package}" in told.out
+    assert "sandbox   missing: bwrap is not installed" in told.out
 
 
 @pytest.mark.parametrize("option", ["--precision float64", "--scene json", "--image exr"])

@@ -11,71 +11,26 @@ import sys
 import time
 import tomllib
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from oracles.compare import compare
-from oracles.images import Picture
-from oracles.truth import truth
 from raycheck.cli import main
+from raycheck.grading.expected import Expectation
 from raycheck.grading.one import Asked
 from raycheck.grading.rubric import Rubric, load
-from raycheck.grading.synthetic import FAULTS, Member, members, write
+from raycheck.grading.synthetic import FAULTS, RUBRIC, Member, members, write, write_quick
 from raycheck.manifest import load as manifest_of
 from raycheck.sandbox import OPEN
 from raycheck.sandbox.census import descendants
 from raycheck.sandbox.jail import missing
-from reference_tracer.lanes import render as lanes
 from reports.grades import Record
-from scenes.catalogue import rung
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=f"no sandbox here: {missing()}")
 ROOT = Path(__file__).resolve().parents[2]
 ENTRY = [sys.executable, "-P", "-c", "from raycheck.cli import entry; entry()"]
 
-RUBRIC = """
-name = "small"
-[[group]]
-name = "rays"
-points = 8
-rungs = ["pixel-corner", "pixel-centre", "off-centre-camera"]
-[[group]]
-name = "light"
-points = 12
-rungs = ["phong-10", "attenuation-inverse-square", "shadow-hard"]
-[[group]]
-name = "branches"
-points = 20
-rungs = ["mirror-imperfect", "facing-mirrors-3", "glass-sphere"]
-"""
-
 TOOLS = {"cpp": "make", "python": "python3", "rust": "rustc", "go": "go", "java": "javac", "javascript": "node"}
-
-
-@cache
-def touched(member: Member, name: str, size: tuple[int, int], precision: str) -> bool:
-    """Does the member draw a wrong picture of this rung; derived from the scene that its faults amount to."""
-    scene = rung(name).scene().resized(*size)
-    drawn = lanes.render(member.as_scene(scene), lanes.backend("numpy", 64)).pixels
-    picture = Picture(drawn.astype(np.float32).astype(np.float64), roundoff=2.0**-24)
-    return compare(picture, truth(scene, precision)).word == "fail"
-
-
-def implied(member: Member, rubric: Rubric, size: tuple[int, int], precision: str) -> list[float]:
-    """Points by group: the rule of docs/grading.md, written anew."""
-    found = []
-    for group in rubric.group:
-        right = wrong = 0
-        for name in group.rungs:
-            if not touched(member, name, size, precision):
-                right += 1
-            elif not any(touched(member, below, size, precision) for below in rung(name).requires):
-                wrong += 1
-        found.append(round(group.points * right / (right + wrong), 2) if right + wrong else 0.0)
-    return found
 
 
 @pytest.fixture
@@ -106,53 +61,26 @@ def test_known_faults_cost_what_the_rubric_says(classroom: Callable[..., Path], 
     chosen = [Member(language, (FAULTS[k],)), Member(language, (FAULTS[(k + 1) % 6], FAULTS[(k + 3) % 6]))]
     folder = classroom(*chosen)
     records = graded(folder, tmp_path / "out")
-    asked = Asked(load(tmp_path / "rubric.toml"), 5, tmp_path / "out", OPEN)
+    expected = Expectation(Asked(load(tmp_path / "rubric.toml"), 5, tmp_path / "out", OPEN))
     for member in chosen:
         precision = manifest_of(folder / member.name).precision
         record = records[member.name]
         assert record.outcome == "graded", record.message
-        assert [group.earned for group in record.groups] == implied(member, asked.rubric, asked.size, precision)
+        assert [group.earned for group in record.groups] == expected.points(member, precision)
         assert record.earned < record.points
 
 
 def test_every_fault_costs_something_and_none_costs_everything() -> None:
     rubric = Rubric.model_validate(tomllib.loads(RUBRIC))
+    expected = Expectation(Asked(rubric, 7, Path(), OPEN))
     for fault in FAULTS:
-        assert 0.0 < sum(implied(Member("cpp", (fault,)), rubric, (100, 75), "float32")) < 40.0
-    assert implied(Member("cpp", ()), rubric, (100, 75), "float32") == [8.0, 12.0, 20.0]
+        assert 0.0 < sum(expected.points(Member("cpp", (fault,)), "float32")) < 40.0
+    assert expected.points(Member("cpp", ()), "float32") == [8.0, 12.0, 20.0]
 
 
 def test_every_member_of_the_synthetic_class_can_be_written(tmp_path: Path) -> None:
     everyone = members(60)
     assert len({write(member, tmp_path).name for member in everyone}) == 60
-
-
-SCRIPT = """
-import struct, sys
-words = {line.split()[0]: line.split()[1:] for line in open(sys.argv[1]) if line.strip()}
-width, height = int(words["image"][0]), int(words["image"][1])
-level = [float(w) for w in words["background"]]
-with open(sys.argv[2], "wb") as f:
-    f.write(b"PF\\n%d %d\\n-1.0\\n" % (width, height))
-    f.write(struct.pack("<3f", *level) * (width * height))
-"""
-
-
-def many(folder: Path, count: int) -> Path:
-    """Submissions that are quickly done, every third of them wrong."""
-    (folder / "rubric.toml").write_text(
-        'name = "quick"\n[[group]]\nname = "a"\npoints = 3\nrungs = ["background"]\n'
-        "[hidden]\npoints = 2\nscenes = 1\n[limits]\nrender = 20\n",
-        "utf-8",
-    )
-    for k in range(count):
-        one = folder / "class" / f"student-{k:02}"
-        one.mkdir(parents=True)
-        (one / "tracer.py").write_text(SCRIPT.replace("*level", "*[1.0, 2.0, 3.0]") if k % 3 == 0 else SCRIPT, "utf-8")
-        (one / "raycheck.toml").write_text(
-            f'[tracer]\nname = "{k}"\nrender = ["python3", "-S", "tracer.py", "{{scene}}", "{{image}}"]\n', "utf-8"
-        )
-    return folder / "class"
 
 
 def bytes_of(out: Path) -> dict[str, bytes]:
@@ -161,7 +89,7 @@ def bytes_of(out: Path) -> dict[str, bytes]:
 
 
 def test_scores_are_the_same_whatever_the_number_of_jobs(tmp_path: Path) -> None:
-    folder = many(tmp_path, 8)
+    folder = write_quick(tmp_path, 8)
     graded(folder, tmp_path / "one")
     graded(folder, tmp_path / "two", "--jobs", "2")
     assert bytes_of(tmp_path / "one") == bytes_of(tmp_path / "two")
@@ -169,7 +97,7 @@ def test_scores_are_the_same_whatever_the_number_of_jobs(tmp_path: Path) -> None
 
 
 def test_kill_9_at_random_moments_loses_nothing(tmp_path: Path) -> None:
-    folder = many(tmp_path, 16)
+    folder = write_quick(tmp_path, 16)
     words = ["--rubric", str(tmp_path / "rubric.toml"), "--seed", "5", "--jobs", "2"]
     draw = random.Random(11)  # noqa: S311
     kills = 0
@@ -198,7 +126,7 @@ def test_kill_9_at_random_moments_loses_nothing(tmp_path: Path) -> None:
 
 
 def test_a_second_run_asks_nothing_and_a_changed_submission_is_asked_again(tmp_path: Path) -> None:
-    folder = many(tmp_path, 3)
+    folder = write_quick(tmp_path, 3)
     graded(folder, tmp_path / "out")
     times = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "out" / "records").iterdir()}
     (folder / "student-01" / "tracer.py").write_text("raise SystemExit(3)", "utf-8")
@@ -209,7 +137,7 @@ def test_a_second_run_asks_nothing_and_a_changed_submission_is_asked_again(tmp_p
 
 
 def test_only_and_rerun_failed_choose(tmp_path: Path) -> None:
-    folder = many(tmp_path, 3)
+    folder = write_quick(tmp_path, 3)
     assert set(graded(folder, tmp_path / "out", "--only", "student-01")) == {"student-01"}
     (folder / "student-02" / "tracer.py").write_text("raise SystemExit(3)", "utf-8")
     graded(folder, tmp_path / "out")

@@ -90,6 +90,16 @@ REFUSED = {
     "negative points": (ONE.replace("3", "-3"), "points"),
     "infinite points": (ONE.replace("3", "inf"), "points"),
     "no groups": ('name = "x"', "group"),
+    "an empty group": (ONE.replace('rungs = ["background"]', ""), "no rungs, laws, stability or speed"),
+    "unknown law": (ONE + 'laws = ["spere"]\n', "no such law"),
+    "law twice": (
+        ONE + 'laws = ["reflect", "reflect/unit"]\n[[group]]\nname="b"\npoints=1\nlaws=["reflect/unit"]',
+        "twice",
+    ),
+    "unknown question": (ONE + 'stability = [{question = "far", float32 = 1, float64 = 1}]', "question"),
+    "stability at one precision": (ONE + 'stability = [{question = "distance", float32 = 9}]', "float64"),
+    "speed of nothing": (ONE + "speed = [0]", "speed"),
+    "unknown word": (ONE + 'unsupported = "free"', "unsupported"),
     "not toml": ("= = =", "not TOML"),
 }
 

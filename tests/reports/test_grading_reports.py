@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from reports import classroom, platforms
+from reports import class_chart, classroom, platforms
 from reports.classroom import Classroom
 from reports.grades import Adjustment, Graded, GroupScore, Line, Outcome, Record, explanation
 
@@ -85,7 +85,18 @@ def test_prairielearns_file_stays_below_its_limit(tmp_path: Path) -> None:
 def hostile() -> Graded:
     groups = (GroupScore(name="A", points=1.0, earned=0.0, lines=(line("lost", "image/background", EVIL),)),)
     return Graded(
-        record=Record(name=EVIL, slug="evil", key="k", tracer=EVIL, outcome="build", message=EVIL, groups=groups),
+        record=Record(
+            name=EVIL,
+            slug="evil",
+            key="k",
+            tracer=EVIL,
+            outcome="build",
+            message=EVIL,
+            groups=groups,
+            faults=(EVIL,),
+            speed=1.0,
+            outside=0.1,
+        ),
         adjustments=(Adjustment(points=-1.0, reason=EVIL),),
     )
 
@@ -123,6 +134,50 @@ def test_the_distribution_counts_everyone_once() -> None:
     graded = [Graded(record=record(f"s{k}", "graded", 12.5 * k / 7)) for k in range(8)]
     assert sum(bar.count for bar in classroom.histogram(room(*graded)).bars) == 8
     assert classroom.histogram(room()).bars[0].count == 0
+
+
+def timed(name: str, speed: float | None, outside: float, *faults: str) -> Graded:
+    more = {"speed": speed, "outside": outside, "faults": faults}
+    return Graded(record=record(name).model_copy(update=more))
+
+
+def test_the_chart_has_a_dot_for_each_timed_submission_and_leads_to_it() -> None:
+    told = room(timed("fast", 300.0, 0.0), timed("slow", 0.5, 0.02), timed("wrong", None, 0.9))
+    page = re.sub(r"<script>.*?</script>", "", classroom.overview(told), flags=re.DOTALL)
+    chart = page[page.index("Speed and accuracy") :]
+    assert re.findall(r'<a href="(students/\w+/index.html)"><title>(\w+)', chart) == [
+        ("students/fast/index.html", "fast"),
+        ("students/slow/index.html", "slow"),
+    ]
+    assert "slow: 0.5 times as fast, 2 % of the pixels wrong" in chart
+    assert "Speed and accuracy" not in classroom.overview(room(timed("wrong", None, 0.9)))
+
+
+def test_a_faster_and_a_more_accurate_submission_is_drawn_to_the_right_and_higher() -> None:
+    dots = [
+        class_chart.Dot("a", "a", 1.0, 0.5),
+        class_chart.Dot("b", "b", 10.0, 0.001),
+        class_chart.Dot("c", "c", 99.0, 0.0),
+    ]
+    found = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)"', str(class_chart.scatter(dots)))
+    across, up = ([float(pair[k]) for pair in found] for k in (0, 1))
+    assert across == sorted(across)
+    assert up == sorted(up, reverse=True)
+
+
+def test_common_faults_are_counted_once_a_submission() -> None:
+    told = room(timed("a", None, 0.0, "no-shadows", "no-shadows"), timed("b", None, 0.0, "upside-down", "no-shadows"))
+    assert classroom.faults(told) == [("no-shadows", 2), ("upside-down", 1)]
+    assert "Most common faults" in classroom.overview(told)
+
+
+def test_a_group_that_is_left_out_does_not_count() -> None:
+    away = GroupScore(name="C", points=4.0, earned=0.0, lines=(line("left out"), line("left out")))
+    part = GroupScore(name="D", points=4.0, earned=4.0, lines=(line("left out"), line("earned")))
+    told = record().model_copy(update={"groups": (*record().groups, away, part)})
+    assert (told.points, told.earned) == (16.5, 9.0)
+    assert platforms.prairielearn(Graded(record=told))["score"] == 9.0 / 16.5
+    assert [rate.away for rate in classroom.rates(room(Graded(record=told)))] == [3]
 
 
 def test_rates_name_hidden_scenes_by_their_group() -> None:

@@ -1,0 +1,134 @@
+"""Points for speed: a multiple of the reference tracer's, of right pictures, timed alone on the machine."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from oracles.images import Picture
+from raycheck.grading import speed
+from raycheck.grading.rubric import Rubric
+from raycheck.grading.speed import Timing, machine, speed_verdicts, timed_scene, timing
+from raycheck.subjects import Attempt
+from raycheck.subjects.inprocess import ReferenceSubject
+from scenes.model import Scene
+
+SCENE = timed_scene(7, (40, 30))
+
+
+class Clocked(ReferenceSubject):
+    """The reference tracer's pictures, at a price: seconds to start, and for each pixel with something in it."""
+
+    def __init__(self, start: float, pixel: float, spoilt: Callable[[Scene, Attempt], Attempt] | None = None) -> None:
+        super().__init__("reference/numpy")
+        self.start, self.pixel, self.spoilt = start, pixel, spoilt
+        self.asked: list[tuple[int, int]] = []
+
+    def render(self, scene: Scene, seed: int) -> Attempt:
+        found = super().render(scene, seed)
+        pixels = scene.image.width * scene.image.height
+        self.asked.append((scene.image.width, scene.image.height))
+        found = replace(found, seconds=self.start + (self.pixel * pixels if scene.objects else 0.0))
+        return self.spoilt(scene, found) if self.spoilt else found
+
+
+@pytest.fixture(autouse=True)
+def reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A reference that takes a millisecond a pixel."""
+    monkeypatch.setattr(speed, "ReferenceSubject", lambda _: Clocked(0.0, 1e-3))
+
+
+@pytest.mark.parametrize(("pixel", "times"), [(1e-3, 1.0), (1e-4, 10.0), (1e-5, 100.0)])
+def test_a_speed_is_a_multiple_of_the_references_without_the_start(pixel: float, times: float) -> None:
+    assert timing(Clocked(3.0, pixel), SCENE).times == pytest.approx(times)
+
+
+def test_a_fast_tracer_is_timed_on_a_larger_picture_and_a_slow_one_on_the_smallest() -> None:
+    fast, slow = Clocked(0.1, 1e-5), Clocked(0.1, 1e-2)
+    timing(fast, SCENE)
+    timing(slow, SCENE)
+    # 0.2 s are clear of the start: 20 000 pixels of 1e-5 s, the next size is 8 times as wide
+    assert (max(fast.asked), max(slow.asked)) == ((320, 240), (40, 30))
+
+
+def black(scene: Scene, found: Attempt) -> Attempt:
+    picture = found.picture
+    assert picture is not None
+    return replace(found, picture=Picture(0.0 * picture.values, roundoff=0.0))
+
+
+def small_only(scene: Scene, found: Attempt) -> Attempt:
+    return found if scene.image.width <= 40 else black(scene, found)
+
+
+def late(scene: Scene, found: Attempt) -> Attempt:
+    return Attempt(None, "timeout", "sphere 1 2 3")
+
+
+@pytest.mark.parametrize(("spoilt", "word"), [(black, "blocked"), (small_only, "blocked"), (late, "timeout")])
+def test_only_right_pictures_are_timed_and_the_scene_stays_unknown(
+    spoilt: Callable[[Scene, Attempt], Attempt], word: str
+) -> None:
+    found = timing(Clocked(0.0, 1e-5, spoilt), SCENE)
+    assert (found.times, found.word) == (None, word)
+    assert not any(digit in found.message for digit in "0123456789")
+
+
+def test_what_a_tracer_does_not_offer_is_not_timed() -> None:
+    plain = Clocked(0.0, 1e-5)
+    plain.features = ()
+    assert timing(plain, SCENE).word == "unsupported"
+    assert plain.asked == []
+
+
+def test_steps_are_earned_up_to_the_speed() -> None:
+    verdicts = speed_verdicts(Timing(12.0), (0.5, 10.0, 100.0))
+    assert [(v.check, v.verdict) for v in verdicts] == [
+        ("speed/0.5", "pass"),
+        ("speed/10", "pass"),
+        ("speed/100", "fail"),
+    ]
+    assert [v.verdict for v in speed_verdicts(Timing(None, "crash", "m"), (1.0, 2.0))] == ["crash", "crash"]
+    group = {"name": "speed", "points": 6, "speed": [0.5, 10, 100]}
+    assert Rubric.model_validate({"name": "r", "group": [group]}).group[0].checks == tuple(v.check for v in verdicts)
+
+
+def test_the_timed_scene_follows_from_the_seed_and_is_no_simple_one() -> None:
+    scenes = [timed_scene(seed, (40, 30)) for seed in range(0, 2000, 100)]
+    assert all(len(scene.objects) >= 3 for scene in scenes)
+    assert len({scene.content_hash() for scene in scenes}) == 20
+    assert timed_scene(300, (40, 30)) == scenes[3]
+
+
+def test_a_timing_is_alone_and_asking_is_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    inside: list[str] = []
+
+    def time_it() -> None:
+        with machine(alone=True):
+            inside.append("alone")
+
+    with machine(alone=False), machine(alone=False):
+        waiting = threading.Thread(target=time_it)
+        waiting.start()
+        time.sleep(0.2)
+        assert inside == []
+    waiting.join(10.0)
+    assert inside == ["alone"]
+
+
+def test_a_lock_in_a_strangers_hands_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with machine(alone=True):
+        (folder,) = tmp_path.iterdir()
+    (folder / speed.LOCK).unlink()
+    folder.rmdir()
+    (tmp_path / "elsewhere").mkdir()
+    folder.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(speed.UsageError, match="not a folder of yours"), machine(alone=True):
+        pass
