@@ -1,9 +1,10 @@
 """What grading costs, and that nothing changes its outcome: a synthetic class on one process, two, and a cluster.
 
-    python benchmarks/grading.py [--members 60] [--kills 20] [--seeds 200]
+    python benchmarks/grading.py [--part PART] [--members 60] [--kills 20] [--quick 40] [--seeds 200]
 
-Prints: float32 examples over drawn scenes; time a submission with one job and two; kill -9 at random
-moments; a Dask cluster of two workers, one killed midway; the cost of the jail itself.
+Prints, by part, jail: the cost of the jail itself; scenes: the float32 C++ example over drawn scenes; class: a class of
+known faults, whether it scores as its faults imply, time a submission with one job and two, and a Dask cluster of two
+workers, one killed midway; kills: kill -9 at random moments of a run of quick submissions.
 """
 
 from __future__ import annotations
@@ -12,71 +13,91 @@ import argparse
 import os
 import random
 import shutil
-import signal
 import socket
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from oracles.compare import compare
 from oracles.images import read
 from oracles.truth import truth
-from raycheck import process
+from raycheck import manifest, process
 from raycheck.examples import examples
-from raycheck.grading.synthetic import members, write
+from raycheck.grading.expected import Expectation
+from raycheck.grading.one import Asked
+from raycheck.grading.rubric import load
+from raycheck.grading.synthetic import RUBRIC, Member, members, write, write_quick
 from raycheck.lanes import best_lanes
 from raycheck.sandbox import OPEN, Jail
+from reports import grades
 from scenes.generator import generate
 from scenes.text import to_text
 
 ROOT = Path(__file__).resolve().parents[1]
 CALL = [sys.executable, "-P", "-c", "from raycheck.cli import entry; entry()"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT)}
-RUBRIC = """
-name = "benchmark"
-[[group]]
-name = "rays"
-points = 8
-rungs = ["pixel-corner", "pixel-centre", "off-centre-camera"]
-[[group]]
-name = "light"
-points = 12
-rungs = ["phong-10", "attenuation-inverse-square", "shadow-hard"]
-[[group]]
-name = "branches"
-points = 20
-rungs = ["mirror-imperfect", "facing-mirrors-3", "glass-sphere"]
+HIDDEN = """
 [hidden]
 points = 10
 scenes = 4
 """
+SEED = 5
+PARTS = ("jail", "scenes", "class", "kills")
 
 
 def main() -> None:
     """Run all parts."""
     parser = argparse.ArgumentParser()
+    parser.add_argument("--part", action="append", choices=PARTS, help="all unless named")
     parser.add_argument("--members", type=int, default=60)
     parser.add_argument("--kills", type=int, default=20)
+    parser.add_argument("--quick", type=int, default=40)
     parser.add_argument("--seeds", type=int, default=200)
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "rubric.toml").write_text(RUBRIC, "utf-8")
-        jail_cost(folder)
-        drawn_scenes(folder, options.seeds)
-        the_class = folder / "class"
-        everyone = members(options.members)
-        for member in everyone:
-            write(member, the_class)
-        one, two = (graded(folder, f"jobs-{jobs}", "--jobs", str(jobs)) for jobs in (1, 2))
-        for jobs, seconds in ((1, one), (2, two)):
-            print(f"{len(everyone)} submissions, {jobs} job(s): {seconds:.0f} s, {seconds / len(everyone):.2f} s each")
-        cluster(folder, len(everyone))
-        same(folder, "jobs-1", "jobs-2", "cluster")
-        kills(folder, options.kills)
+    for part in options.part or PARTS:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            match part:
+                case "jail":
+                    jail_cost(folder)
+                case "scenes":
+                    drawn_scenes(folder, options.seeds)
+                case "class":
+                    known_faults(folder, options.members)
+                case "kills":
+                    kills(folder, options.kills, options.quick)
+
+
+def known_faults(folder: Path, count: int) -> None:
+    """The synthetic class on one process, two, and a cluster."""
+    (folder / "rubric.toml").write_text(RUBRIC + HIDDEN, "utf-8")
+    everyone = members(count)
+    for member in everyone:
+        write(member, folder / "class")
+    for jobs in (1, 2):
+        seconds = graded(folder, f"jobs-{jobs}", "--jobs", str(jobs))
+        print(f"{len(everyone)} submissions, {jobs} job(s): {seconds:.0f} s, {seconds / len(everyone):.2f} s each")
+    as_implied(folder, everyone)
+    cluster(folder, len(everyone))
+    print(f"grades.csv of one job, two, and the cluster: {same(folder, 'jobs-1', 'jobs-2', 'cluster')}")
+
+
+def as_implied(folder: Path, everyone: Sequence[Member]) -> None:
+    """Do the scores follow from the faults, as derived without running them."""
+    expected = Expectation(Asked(load(folder / "rubric.toml"), SEED, folder, OPEN))
+    right = 0
+    for member in everyone:
+        record = grades.read(folder / "jobs-1" / "records" / f"{member.name}.json")
+        points = expected.points(member, manifest.load(folder / "class" / member.name).precision)
+        if record is not None and [group.earned for group in record.groups] == points:
+            right += 1
+        else:
+            print(f"{member.name}: {record and [group.earned for group in record.groups]}, implied {points}")
+    print(f"scores as the faults imply: {right} of {len(everyone)}")
 
 
 def jail_cost(folder: Path) -> None:
@@ -106,7 +127,7 @@ def drawn_scenes(folder: Path, count: int) -> None:
 def words(folder: Path, out: str) -> list[str]:
     """The call that grades the class into a folder."""
     rubric = str(folder / "rubric.toml")
-    return [*CALL, "grade", str(folder / "class"), "--rubric", rubric, "--seed", "5", "--out", str(folder / out)]
+    return [*CALL, "grade", str(folder / "class"), "--rubric", rubric, "--seed", str(SEED), "--out", str(folder / out)]
 
 
 def graded(folder: Path, out: str, *more: str) -> float:
@@ -116,10 +137,9 @@ def graded(folder: Path, out: str, *more: str) -> float:
     return time.monotonic() - begin
 
 
-def same(folder: Path, *outs: str) -> None:
+def same(folder: Path, *outs: str) -> str:
     """Are the grades the same, byte for byte."""
-    tables = {(folder / out / "grades.csv").read_bytes() for out in outs}
-    print(f"grades.csv of {', '.join(outs)}: {'the same bytes' if len(tables) == 1 else 'DIFFERENT'}")
+    return "the same bytes" if len({(folder / out / "grades.csv").read_bytes() for out in outs}) == 1 else "DIFFERENT"
 
 
 def cluster(folder: Path, count: int) -> None:
@@ -151,19 +171,28 @@ def cluster(folder: Path, count: int) -> None:
             child.wait()
 
 
-def kills(folder: Path, count: int) -> None:
-    """Kill -9 at random moments, then to the end."""
+def kills(folder: Path, count: int, quick: int) -> None:
+    """Kill -9 so many runs midway, each going on where the last was struck; a run that ends by itself is compared."""
+    write_quick(folder, quick)
+    seconds = graded(folder, "whole", "--jobs", "2")
     draw = random.Random(11)  # noqa: S311
-    struck = 0
-    for _ in range(count):
-        run = subprocess.Popen([*words(folder, "killed"), "--jobs", "2"], env=ENVIRONMENT, stdout=subprocess.DEVNULL)
-        time.sleep(draw.uniform(0.5, 12.0))
-        struck += run.poll() is None
-        run.send_signal(signal.SIGKILL)
-        run.wait()
-    graded(folder, "killed", "--jobs", "2")
-    print(f"kill -9: {struck} of {count} runs struck before their end")
-    same(folder, "jobs-1", "killed")
+    struck, outs = 0, ["killed-0"]
+    while struck < count:
+        call = [*words(folder, outs[-1]), "--jobs", "2"]
+        run = subprocess.Popen(call, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
+        try:
+            run.wait(draw.uniform(0.2, 0.5 * seconds))
+        except subprocess.TimeoutExpired:
+            run.kill()
+            run.wait()
+            struck += 1
+        else:
+            outs.append(f"killed-{len(outs)}")
+    graded(folder, outs[-1], "--jobs", "2")
+    print(
+        f"kill -9: {count} of {count} runs of {quick} submissions struck before their end, {len(outs)} times to the end"
+    )
+    print(f"grades.csv of all and of an uninterrupted run: {same(folder, 'whole', *outs)}")
 
 
 if __name__ == "__main__":
