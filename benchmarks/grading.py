@@ -179,7 +179,7 @@ def kills(folder: Path, count: int, quick: int) -> None:
     struck, outs = 0, ["killed-0"]
     while struck < count:
         call = [*words(folder, outs[-1]), "--jobs", "2"]
-        run = subprocess.Popen(call, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
+        run = subprocess.Popen(call, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             run.wait(draw.uniform(0.2, 0.5 * seconds))
         except subprocess.TimeoutExpired:

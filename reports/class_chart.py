@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from reports.drawings import LogScale, picture, tag
+from reports.format import times
 
 WIDTH, HEIGHT = 640.0, 330.0
-LEFT, RIGHT, TOP, BOTTOM = 76.0, 620.0, 34.0, 276.0
+LEFT, RIGHT, TOP, BOTTOM = 76.0, 600.0, 34.0, 276.0
 NONE = 14.0
 """Where those without a wrong pixel are: a line of their own above the logarithmic axis."""
 FEWEST = 1e-5
@@ -68,7 +69,7 @@ def _up(y: LogScale) -> list[Markup]:
 
 def _dot(dot: Dot, x: LogScale, y: LogScale) -> Markup:
     up = y(dot.outside) if dot.outside > 0.0 else NONE
-    told = f"{dot.name}: {dot.speed:.2g} times as fast, {100 * dot.outside:.2g} % of the pixels wrong"
+    told = f"{dot.name}: {times(dot.speed)} as fast, {100 * dot.outside:.2g} % of the pixels wrong"
     look = "dot" if dot.outside == 0.0 else "dot wrong"
     circle = tag("circle", cx=x(dot.speed), cy=up, r=5.0, class_=look)
     return tag("a", tag("title", told), circle, href=dot.place)

@@ -32,6 +32,11 @@ def points(x: float) -> str:
     return f"{x:g}"
 
 
+def times(x: float) -> str:
+    """A multiple, to two digits: 0.5×, 12×, 770×."""
+    return f"{float(f'{x:.2g}'):g}×"
+
+
 def signed(x: float) -> str:
     """Points added or taken."""
     return f"{x:+g}"

@@ -159,7 +159,7 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
             raise _EndedError("start", str(error)) from None
     timing = speed.Timing(None) if broken else _timing(asked, patience)
     verdicts = (*pictures, *further, *speed.speed_verdicts(timing, () if broken else rubric.speeds))
-    _write_results(asked, subject, verdicts, student)
+    _write_results(asked, subject, [verdict for verdict in verdicts if _of_conformance(verdict)], student)
     evidence = Evidence(_complete(rubric, verdicts), foreign=foreign_laws(subject, rubric.laws))
     return Record(
         name=submission.name,
@@ -172,6 +172,13 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
         outside=_outside((*shown, *secret)),
         speed=timing.times,
     )
+
+
+def _of_conformance(verdict: Verdict) -> bool:
+    """Does it belong on a page about what conforms: no steps of speed and reach, no law that was not asked."""
+    if verdict.check.startswith("image/"):
+        return True
+    return verdict.check.startswith(("law/", "probe/")) and verdict.verdict != "unsupported"
 
 
 def _beside_others(rubric: Rubric) -> contextlib.AbstractContextManager[None]:

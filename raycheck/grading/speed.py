@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import math
 import os
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -24,11 +25,12 @@ from raycheck.grading.rubric import speed_check
 from raycheck.lanes import best_lanes
 from raycheck.subjects import Attempt, Subject
 from raycheck.subjects.inprocess import ReferenceSubject
+from reports.format import times as shown
 from scenes.generator import generate
 from scenes.model import Scene
 
 REFERENCE = "reference/plain"
-ROUNDS = 3
+ROUNDS = 5
 """Of which the shortest time counts: whatever disturbs makes it longer."""
 SCALES = (1, 2, 4, 8)
 """Sides of the timed picture, in sides of those that are judged."""
@@ -84,14 +86,12 @@ def timing(subject: Subject, scene: Scene) -> Timing:
         return Timing(None, first.word or "invalid", "no picture of the timed scene came")
     if not _right(subject, large, first.picture):
         return Timing(None, "blocked", "only right pictures are timed, and that of the timed scene is wrong")
-    reference = ReferenceSubject(REFERENCE)
-    own, theirs = [], []
+    own, theirs = _Clock(subject, large), _Clock(ReferenceSubject(REFERENCE), scene)
     for _ in range(ROUNDS):
-        own.append(_seconds(subject, large))
-        theirs.append(_seconds(reference, scene))
-    if None in own:
-        return Timing(None, "error", "a picture that came once did not come again")
-    return Timing(_least(theirs) / _pixels(scene) / (_least(own) / _pixels(large)))
+        if not own.tick():
+            return Timing(None, "error", "a picture that came once did not come again")
+        theirs.tick()
+    return Timing(theirs.pixel / own.pixel)
 
 
 def _large(subject: Subject, scene: Scene) -> tuple[Scene, Attempt]:
@@ -110,18 +110,26 @@ def _start(subject: Subject, scene: Scene) -> float:
     return nothing.seconds if nothing.picture is not None else 0.0
 
 
-def _seconds(subject: Subject, scene: Scene) -> float | None:
-    """Seconds that the things in a scene cost; None where no picture came."""
-    attempt = subject.render(scene, 0)
-    return None if attempt.picture is None else max(LEAST, attempt.seconds - _start(subject, scene))
+@dataclass
+class _Clock:
+    """A scene's times with what is in it and without, the shortest of each."""
 
+    subject: Subject
+    scene: Scene
+    full: float = math.inf
+    start: float = math.inf
 
-def _least(seconds: Sequence[float | None]) -> float:
-    return min(s for s in seconds if s is not None)
+    def tick(self) -> bool:
+        """Time both once; False where no picture came."""
+        attempt = self.subject.render(self.scene, 0)
+        self.full = min(self.full, attempt.seconds)
+        self.start = min(self.start, _start(self.subject, self.scene))
+        return attempt.picture is not None
 
-
-def _pixels(scene: Scene) -> int:
-    return scene.image.width * scene.image.height
+    @property
+    def pixel(self) -> float:
+        """Seconds a pixel that the things in the scene cost."""
+        return max(LEAST, self.full - self.start) / (self.scene.image.width * self.scene.image.height)
 
 
 def _right(subject: Subject, scene: Scene, picture: Picture) -> bool:
@@ -136,7 +144,7 @@ def speed_verdicts(found: Timing, steps: Sequence[float]) -> list[Verdict]:
         word, message = found.word, found.message
         if found.times is not None:
             word = "pass" if found.times >= times else "fail"
-            message = f"{found.times:.2g} times as fast as the reference tracer, {times:g} asked"
+            message = f"{shown(found.times)} as fast as the reference tracer, {times:g}× asked"
         told = {"check": speed_check(times), "verdict": word, "message": message, "teaches": teaches}
         verdicts.append(Verdict.model_validate(told))
     return verdicts

@@ -149,7 +149,8 @@ def test_the_chart_has_a_dot_for_each_timed_submission_and_leads_to_it() -> None
         ("students/fast/index.html", "fast"),
         ("students/slow/index.html", "slow"),
     ]
-    assert "slow: 0.5 times as fast, 2 % of the pixels wrong" in chart
+    assert "slow: 0.5× as fast, 2 % of the pixels wrong" in chart
+    assert ">300×</td>" in page
     assert "Speed and accuracy" not in classroom.overview(room(timed("wrong", None, 0.9)))
 
 
