@@ -112,7 +112,7 @@ def table(classroom: Classroom) -> str:
     for graded in classroom.graded:
         record = graded.record
         hand = sum(entry.points for entry in graded.adjustments)
-        earned = [f"{group.earned:g}" for group in record.groups]
+        earned = ["" if group.left_out else f"{group.earned:g}" for group in record.groups]
         head = [_cell(record.name), f"{graded.score:g}", f"{record.points:g}", record.outcome]
         sheet.writerow([*head, *earned, f"{hand:g}"])
     return written.getvalue()

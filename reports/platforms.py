@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from reports import plain
-from reports.grades import WORDS, Graded, GroupScore
+from reports.grades import WORDS, Graded, GroupScore, Record
 from scenes.disk import write_whole
 
 GRADESCOPE, PRAIRIELEARN = "gradescope.json", "prairielearn.json"
@@ -45,7 +45,7 @@ def gradescope(graded: Graded) -> dict[str, Any]:
                 "status": "passed" if group.earned == group.points else "failed",
                 "output": _output(group),
             }
-            for number, group in enumerate(record.groups, start=1)
+            for number, group in enumerate(_counted(record), start=1)
         ],
     }
 
@@ -66,9 +66,14 @@ def prairielearn(graded: Graded) -> dict[str, Any]:
                 "max_points": group.points,
                 "output": _output(group),
             }
-            for group in record.groups
+            for group in _counted(record)
         ],
     }
+
+
+def _counted(record: Record) -> list[GroupScore]:
+    """The groups of which the points are the sum."""
+    return [group for group in record.groups if not group.left_out]
 
 
 def _said(graded: Graded) -> str:

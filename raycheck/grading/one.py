@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import random
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from oracles.verdict import Pictures, Verdict
 from raycheck import VERSION, manifest, session
 from raycheck.errors import StartError, UsageError
-from raycheck.grading import speed
-from raycheck.grading.formulas import foreign_laws, law_verdicts, stability_verdicts
+from raycheck.grading import evidence, speed
 from raycheck.grading.patience import Patience
 from raycheck.grading.rubric import Rubric
-from raycheck.grading.score import Evidence, nothing, score
+from raycheck.grading.score import nothing, score
 from raycheck.grading.submissions import Submission, take_in
 from raycheck.known import Known
 from raycheck.machine import machine
@@ -65,16 +63,12 @@ class Asked:
     def hidden(self) -> list[Rung]:
         """The scenes that nobody has seen."""
         count = self.rubric.hidden.scenes if self.rubric.hidden else 0
-        return [drawn(_number(f"hidden {self.seed} {k}"), f"hidden-{k + 1}") for k in range(count)]
+        return [drawn(evidence.number(f"hidden {self.seed} {k}"), f"hidden-{k + 1}") for k in range(count)]
 
     def key(self, content: str) -> str:
         """One word for everything that the scores of this content follow from."""
         parts = (content, VERSION, catalogue_hash(), self.rubric.digest(), str(self.seed), repr(self.room))
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()
-
-
-def _number(text: str) -> int:
-    return int.from_bytes(hashlib.sha256(text.encode()).digest()[:6])
 
 
 class _EndedError(Exception):
@@ -145,7 +139,7 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
     subject = _subject(asked, arrived.root)
     patience = Patience(subject)
     rubric, hidden = asked.rubric, asked.hidden
-    with workspace() as private, _beside_others(rubric):
+    with workspace() as private, evidence.beside_others(rubric):
         _prepare(subject)
         try:
             shown = _judged(patience, asked.rungs, asked.size, student)
@@ -154,13 +148,12 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
             pictures = (*shown, *told)
             first = next((v.message for v in pictures if v.verdict in BROKEN), "")
             broken = bool(pictures) and all(verdict.verdict in BROKEN for verdict in pictures)
-            further = () if broken else _further(asked, subject, patience, shown, student)
+            further = () if broken else evidence.formulas(rubric, asked.seed, subject, patience, shown, student)
         except StartError as error:
             raise _EndedError("start", str(error)) from None
-    timing = speed.Timing(None) if broken else _timing(asked, patience)
+    timing = speed.Timing(None) if broken else evidence.timing(rubric, asked.seed, asked.size, patience)
     verdicts = (*pictures, *further, *speed.speed_verdicts(timing, () if broken else rubric.speeds))
-    _write_results(asked, subject, [verdict for verdict in verdicts if _of_conformance(verdict)], student)
-    evidence = Evidence(_complete(rubric, verdicts), foreign=foreign_laws(subject, rubric.laws))
+    _write_results(asked, subject, [verdict for verdict in verdicts if evidence.of_conformance(verdict)], student)
     return Record(
         name=submission.name,
         slug=submission.slug,
@@ -168,55 +161,10 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
         tracer=subject.name,
         outcome="protocol" if broken else "graded",
         message=first if broken else "",
-        groups=score(rubric, evidence, hidden),
-        outside=_outside((*shown, *secret)),
+        groups=score(rubric, evidence.gathered(rubric, subject, verdicts), hidden),
+        outside=evidence.outside((*shown, *secret)),
         speed=timing.times,
     )
-
-
-def _of_conformance(verdict: Verdict) -> bool:
-    """Does it belong on a page about what conforms: no steps of speed and reach, no law that was not asked."""
-    if verdict.check.startswith("image/"):
-        return True
-    return verdict.check.startswith(("law/", "probe/")) and verdict.verdict != "unsupported"
-
-
-def _beside_others(rubric: Rubric) -> contextlib.AbstractContextManager[None]:
-    """What must not run while another submission is timed; of no concern where nothing is timed."""
-    return speed.machine(alone=False) if rubric.speeds else contextlib.nullcontext()
-
-
-def _further(
-    asked: Asked, subject: CommandSubject, patience: Patience, shown: Sequence[Verdict], student: Path
-) -> list[Verdict]:
-    """Laws and stability; their seed follows from the run's, which it does not tell."""
-    rubric, seed = asked.rubric, _number(f"laws {asked.seed}") % 2**31
-    laws = law_verdicts(subject, patience, rubric.laws, seed, shown, student) if rubric.laws else []
-    holds = stability_verdicts(subject, rubric.reaches, seed) if rubric.reaches else ()
-    return [*laws, *holds]
-
-
-def _timing(asked: Asked, patience: Patience) -> speed.Timing:
-    if not asked.rubric.speeds:
-        return speed.Timing(None)
-    with speed.machine(alone=True):
-        return speed.timing(patience, speed.timed_scene(_number(f"timed {asked.seed}"), asked.size))
-
-
-def _complete(rubric: Rubric, verdicts: Iterable[Verdict]) -> dict[str, Verdict]:
-    """A verdict for each check that counts; what was not asked is blocked."""
-    found = {verdict.check: verdict for verdict in verdicts}
-    for group in rubric.group:
-        for check in group.checks:
-            message = "not asked, no usable picture came"
-            found.setdefault(check, Verdict(check=check, verdict="blocked", message=message))
-    return found
-
-
-def _outside(pictures: Sequence[Verdict]) -> float | None:
-    """Mean share of wrong pixels, all of a picture that did not come; None where nothing was judged by pixel."""
-    shares = [v.judged.outside / v.judged.pixels if v.judged else 1.0 for v in pictures if v.sampled is None]
-    return sum(shares) / len(shares) if shares else None
 
 
 def _subject(asked: Asked, root: Path) -> CommandSubject:

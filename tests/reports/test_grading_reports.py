@@ -178,6 +178,9 @@ def test_a_group_that_is_left_out_does_not_count() -> None:
     told = record().model_copy(update={"groups": (*record().groups, away, part)})
     assert (told.points, told.earned) == (16.5, 9.0)
     assert platforms.prairielearn(Graded(record=told))["score"] == 9.0 / 16.5
+    scope = platforms.gradescope(Graded(record=told))
+    assert sum(test["max_score"] for test in scope["tests"]) == told.points
+    assert classroom.table(room(Graded(record=told))).splitlines()[1] == "alice,9,16.5,graded,5,0,,4,0"
     assert [rate.away for rate in classroom.rates(room(Graded(record=told)))] == [3]
 
 
