@@ -30,12 +30,14 @@ from scenes.generator import generate
 from scenes.model import Scene
 
 REFERENCE = "reference/plain"
-ROUNDS = 5
+ROUNDS = 3
 """Of which the shortest time counts: whatever disturbs makes it longer."""
 SCALES = (1, 2, 4, 8)
 """Sides of the timed picture, in sides of those that are judged."""
-CLEAR = 0.2
-"""Seconds beyond its start that a timed picture should take; starting a program varies by some 10 ms."""
+GROWTH = 4
+"""Pixels of a scale, in those of the one before."""
+LONG = 2.0
+"""Seconds beyond its start that a picture may take, if there is a choice; a start varies by some 0.1 s."""
 LEAST = 1e-3
 """Seconds: a difference of two runs below this says nothing."""
 OBJECTS = 3
@@ -95,11 +97,11 @@ def timing(subject: Subject, scene: Scene) -> Timing:
 
 
 def _large(subject: Subject, scene: Scene) -> tuple[Scene, Attempt]:
-    """The scene at the size at which a picture takes long enough to be timed, and the first picture of it."""
+    """The scene at the largest size that does not take too long, and the first picture of it."""
     for scale in SCALES:
         larger = scene.resized(scale * scene.image.width, scale * scene.image.height)
         attempt = subject.render(larger, 0)
-        if attempt.picture is None or attempt.seconds - _start(subject, larger) >= CLEAR:
+        if attempt.picture is None or GROWTH * (attempt.seconds - _start(subject, larger)) > LONG:
             break
     return larger, attempt
 

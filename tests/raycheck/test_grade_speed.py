@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 import time
 from collections.abc import Callable
@@ -11,11 +12,15 @@ from pathlib import Path
 import pytest
 
 from oracles.images import Picture
+from raycheck.cli import main
+from raycheck.examples import examples
 from raycheck.grading import speed
 from raycheck.grading.rubric import Rubric
 from raycheck.grading.speed import Timing, machine, speed_verdicts, timed_scene, timing
+from raycheck.sandbox.jail import missing
 from raycheck.subjects import Attempt
 from raycheck.subjects.inprocess import ReferenceSubject
+from reports import grades
 from scenes.model import Scene
 
 SCENE = timed_scene(7, (40, 30))
@@ -52,7 +57,7 @@ def test_a_fast_tracer_is_timed_on_a_larger_picture_and_a_slow_one_on_the_smalle
     fast, slow = Clocked(0.1, 1e-5), Clocked(0.1, 1e-2)
     timing(fast, SCENE)
     timing(slow, SCENE)
-    # 0.2 s are clear of the start: 20 000 pixels of 1e-5 s, the next size is 8 times as wide
+    # 12 s for 1200 pixels is too long already; 0.9 s for 64 times as many is not
     assert (max(fast.asked), max(slow.asked)) == ((320, 240), (40, 30))
 
 
@@ -132,3 +137,22 @@ def test_a_lock_in_a_strangers_hands_is_refused(tmp_path: Path, monkeypatch: pyt
     folder.symlink_to(tmp_path / "elsewhere")
     with pytest.raises(speed.UsageError, match="not a folder of yours"), machine(alone=True):
         pass
+
+
+@pytest.mark.skipif(bool(missing()) or not shutil.which("make"), reason="a sandbox and make are needed")
+def test_a_submission_is_timed_in_the_jail_and_drawn_on_the_class_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.undo()  # the true reference
+    shutil.copytree(examples() / "cpp_lecture", tmp_path / "class" / "alice", ignore=shutil.ignore_patterns("tracer"))
+    (tmp_path / "r.toml").write_text(
+        'name = "r"\n[[group]]\nname = "fast"\npoints = 4\nrungs = ["background"]\nspeed = [1e-3, 1e6]\n', "utf-8"
+    )
+    words = ["grade", str(tmp_path / "class"), "--rubric", str(tmp_path / "r.toml"), "--out", str(tmp_path / "out")]
+    assert main([*words, "--jobs", "2"]) == 0
+    record = grades.read(tmp_path / "out" / "records" / "alice.json")
+    assert record is not None
+    assert record.speed is not None
+    # Compiled code against Python's: between a thousandth and a million times as fast, on any machine
+    assert (record.earned, [line.verdict for line in record.groups[0].lines]) == (2.67, ["pass", "pass", "fail"])
+    assert "Speed and accuracy" in (tmp_path / "out" / "index.html").read_text("utf-8")
