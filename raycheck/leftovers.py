@@ -22,7 +22,8 @@ def claimed(folder: Path) -> Iterator[bool]:
         yield False
         return
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH)
+        with contextlib.suppress(OSError):  # a file system without locks: nobody can sweep there either
+            fcntl.flock(descriptor, fcntl.LOCK_SH)
         yield os.fstat(descriptor).st_nlink > 0 and folder.is_dir()
     finally:
         os.close(descriptor)
@@ -45,7 +46,7 @@ def _swept(folder: Path, remove: Callable[[Path], object]) -> None:
         if os.fstat(descriptor).st_uid == os.geteuid():
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             remove(folder)
-    except BlockingIOError:
-        return  # in use
+    except OSError:
+        return  # in use, or no locks here
     finally:
         os.close(descriptor)

@@ -41,7 +41,8 @@ def wanted(folders: Sequence[Path]) -> Path | None:
 def _filled() -> Path | None:
     """The cache of this version of Go and these packages, made where there is none; None where it cannot be made."""
     with contextlib.suppress(OSError, subprocess.SubprocessError):
-        place = kept.folder().with_name(f"{kept.folder().name}-go")
+        kept_at = kept.folder().absolute()
+        place = kept_at.with_name(f"{kept_at.name}-go")
         place.mkdir(parents=True, exist_ok=True)
         version = _go("version")
         name = hashlib.sha256("\n".join((version, *PACKAGES)).encode()).hexdigest()[:16]
