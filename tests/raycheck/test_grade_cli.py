@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import socket
 import stat
 import subprocess
 import sys
+import tomllib
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -149,6 +151,16 @@ def test_the_rubric_that_ships_asks_every_rung_for_100_points() -> None:
     shipped = rubric.load(None)
     assert len(shipped.rungs) == 43
     assert sum(group.points for group in shipped.group) + (shipped.hidden.points if shipped.hidden else 0) == 100
+
+
+def test_the_rubric_in_the_docs_is_one() -> None:
+    page = (ROOT / "docs" / "grading.md").read_text("utf-8")
+    (text,) = re.findall(r"^```toml\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    told = rubric.Rubric.model_validate(tomllib.loads(text))
+    assert told.rungs
+    assert told.laws
+    assert told.reaches
+    assert told.speeds
 
 
 def test_no_two_names_share_a_file_and_none_leaves_its_folder() -> None:
