@@ -66,7 +66,7 @@ ATTACKS = {
         "timeout",
         "all of them together",
     ),
-    "flood": ("greet()\nwhile True: os.write(1, b'1 0 0' + bytes(1 << 16))", "invalid", ""),
+    "flood": ("greet(); sys.stdin.readline()\nwhile True: os.write(1, b'1 0 0' + bytes(1 << 16))", "invalid", ""),
     "nonsense": ("greet()\nfor _ in sys.stdin: say('nan nan nan')", "invalid", "is not finite"),
     "daemon": (
         "greet()\nif os.fork() == 0:\n    os.setsid(); signal.signal(15, signal.SIG_IGN); os.close(1); time.sleep(60)\n"
