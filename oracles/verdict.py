@@ -155,6 +155,64 @@ class Verdict(Frozen):
     seconds: float = 0.0
 
 
+class Suspect(Frozen):
+    """A known fault against a tracer's wrong pictures.
+
+    share: of their residual that it explains alone, each picture counting alike, less what it spoils of the right
+    ones; pictures: wrong ones that it explains alone. The rest is the dictionary's entry.
+    """
+
+    name: str
+    group: str
+    source: str
+    wrong: str
+    right: str
+    seen: str
+    mend: str
+    share: float
+    pictures: int
+
+
+class Located(Frozen):
+    """Where an error lives that no known fault explains.
+
+    term: of the shading sum; formula: as it should be; likeness: how alike its pictures are to those of the fault
+    `like`, 0 to 1; laws: those of the term's formulas that the tracer's own answers break.
+    """
+
+    term: str
+    formula: str
+    slide: str
+    likeness: float
+    like: str
+    laws: tuple[str, ...] = ()
+
+
+class Diagnosis(Frozen):
+    """What explains a tracer's wrong pictures.
+
+    kind: `named` where the faults explain every picture, wrong and right; `likely` where they explain some of the
+    wrong ones; `unknown` where no known fault does. failing: wrong pictures; explained: those that the faults
+    together explain; alike: faults that make the very same pictures; others: the next best alone; check: the first
+    wrong picture that the faults explain, else the first; pixel: where that is wrong at first; picture: what the
+    faults make of it.
+    """
+
+    kind: Literal["named", "likely", "unknown"]
+    sentence: str
+    failing: int
+    explained: int
+    share: float
+    faults: tuple[Suspect, ...] = ()
+    alike: tuple[str, ...] = ()
+    others: tuple[Suspect, ...] = ()
+    located: Located | None = None
+    check: str = ""
+    pixel: tuple[int, int] | None = None
+    reproduce: str = ""
+    picture: str | None = None
+
+
 class Standing(Frozen):
     """A party against certified truth.
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from oracles.verdict import Verdict
+from oracles.verdict import Diagnosis, Verdict
 from raycheck import VERSION
+from raycheck.diagnosis import diagnosed
 from raycheck.errors import CONFORMS, DIFFERS, INTERRUPTED, UsageError
 from raycheck.known import Known
 from raycheck.laws import LawPlan, judge_laws
@@ -54,6 +55,7 @@ def check(order: Order) -> tuple[results.Results, int]:
     _make_room(order.out)
     order.subject.prepare()
     verdicts: list[Verdict] = []
+    diagnosis: Diagnosis | None = None
     complete = False
     progress = Progress(f"checking {order.subject.name}", _planned(order, plan))
     try:
@@ -65,16 +67,17 @@ def check(order: Order) -> tuple[results.Results, int]:
         for verdict in judge_laws(order.subject, order.laws, hearing.convention, tuple(verdicts), order.out):
             verdicts.append(verdict)
             progress.step(verdict.check)
+        diagnosis = diagnosed(hearing, verdicts, order.out, progress.say)
         complete = True
     except KeyboardInterrupt:
         print("\ninterrupted: writing what there is", file=sys.stderr)
     except Exception:
         if verdicts:
-            write(_results(order, plan, verdicts, False, started, begin), order.out)
+            write(_results(order, plan, verdicts, None, False, started, begin), order.out)
         raise
     finally:
         progress.close()
-    found = _results(order, plan, verdicts, complete, started, begin)
+    found = _results(order, plan, verdicts, diagnosis, complete, started, begin)
     write(found, order.out)
     if not complete:
         return found, INTERRUPTED
@@ -86,7 +89,13 @@ def _planned(order: Order, plan: Plan) -> int:
 
 
 def _results(
-    order: Order, plan: Plan, verdicts: Sequence[Verdict], complete: bool, started: str, begin: float
+    order: Order,
+    plan: Plan,
+    verdicts: Sequence[Verdict],
+    diagnosis: Diagnosis | None,
+    complete: bool,
+    started: str,
+    begin: float,
 ) -> results.Results:
     return results.Results(
         suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
@@ -99,6 +108,7 @@ def _results(
         seconds=time.monotonic() - begin,
         planned=_planned(order, plan),
         verdicts=tuple(verdicts),
+        diagnosis=diagnosis,
         complete=complete,
     )
 

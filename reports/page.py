@@ -83,6 +83,7 @@ def render(results: Results, folder: Path, template: str = FILE, **more: object)
             blocked=_with(entries, "blocked"),
             open=_with(entries, *conclusion.OPEN),
             passed=_with(entries, "pass"),
+            diagnosed=_diagnosed(clean, folder),
             anchors={entry.verdict.check: entry.anchor for entry in reversed(entries)},
             **({"policy": policy()} | more),
         )
@@ -97,6 +98,17 @@ def _entries(results: Results, folder: Path) -> list[Entry]:
         Entry(_anchor(index, verdict.check), verdict, {kind: found[name] for kind, name in _pictures(verdict)})
         for index, verdict in enumerate(results.verdicts, start=1)
     ]
+
+
+def _diagnosed(results: Results, folder: Path) -> dict[str, Picture]:
+    """The picture pair of the diagnosis, and what the faults that it names make of the scene."""
+    found = results.diagnosis
+    verdict = next((v for v in results.verdicts if found and v.check == found.check), None)
+    if found is None or verdict is None:
+        return {}
+    names = {"expected": verdict.pictures.expected, "got": verdict.pictures.got, "with the fault": found.picture}
+    shown = gallery(folder, [name for name in names.values() if name])
+    return {kind: shown[name] for kind, name in names.items() if name}
 
 
 def _pictures(verdict: Verdict) -> Iterator[tuple[str, str]]:

@@ -72,7 +72,14 @@ def walk(value: Any) -> Any:
     return _walk(value, "")
 
 
-_FIELDS = {"message": paragraph, "output_tail": tail, "reproduce": command, "command": command, "run": command}
+_FIELDS = {
+    "message": paragraph,
+    "sentence": paragraph,
+    "output_tail": tail,
+    "reproduce": command,
+    "command": command,
+    "run": command,
+}
 
 
 def _single(raw: str) -> str:

@@ -8,7 +8,7 @@ from typing import Literal
 
 from pydantic import ValidationError
 
-from oracles.verdict import CONFORMING, Frozen, Verdict
+from oracles.verdict import CONFORMING, Diagnosis, Frozen, Verdict
 from scenes.disk import read_bounded, write_whole
 
 FILE = "results.json"
@@ -48,7 +48,8 @@ class Suite(Frozen):
 class Results(Frozen):
     """One run of the suite against one subject.
 
-    planned: checks that were meant to run; complete: False if the run was cut off before them.
+    planned: checks that were meant to run; diagnosis: what explains those that fail; complete: False if the run was
+    cut off before them.
     """
 
     schema_version: Literal[1] = 1
@@ -62,6 +63,7 @@ class Results(Frozen):
     seconds: float = 0.0
     planned: int
     verdicts: tuple[Verdict, ...]
+    diagnosis: Diagnosis | None = None
     complete: bool
 
     @property
