@@ -128,7 +128,8 @@ class Witness:
         pictures = [write(pixels, self.scene) for pixels in (linear - reach, linear, linear + reach)]
         low, middle, high = (self._flat(picture.values) for picture in pictures)
         if pictures[1].maximum is None:
-            return self._bounds(middle)
+            moved = np.maximum(np.abs(high - middle), np.abs(middle - low))  # a wrong way to write may stretch errors
+            return self._bounds(middle, np.maximum(self._reach, np.nan_to_num(moved)))
         if pictures[1].maximum != self.got.maximum:
             return self.lawful(())  # another form of file than the tracer writes
         both = np.minimum(low, high), np.maximum(low, high)
