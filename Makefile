@@ -28,6 +28,7 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/laws_speed.py
 	$(BIN)/python -P benchmarks/laws_table.py
 	$(BIN)/python -P benchmarks/peers.py
+	$(BIN)/python -P benchmarks/diagnosis.py
 	$(BIN)/python -P benchmarks/stochastic_gate.py
 	$(BIN)/python -P benchmarks/grading.py
 
