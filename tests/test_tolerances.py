@@ -9,7 +9,7 @@ TESTS = Path(__file__).parent
 NAMES = {"approx": {"abs"}, "allclose": {"rtol", "atol"}, "assert_allclose": {"rtol", "atol"}, "isclose": {"atol"}}
 """What a call has to say: left out, approx takes 1e-6 of the value and never less than 1e-12, also beside a `rel`."""
 LEAST = 1e-3
-"""No smaller number is written out in a tolerance: it is made of roundoffs, digits or steps, which say where it is from."""
+"""No smaller number is written out: a tolerance is made of roundoffs, digits or steps, which say where it is from."""
 
 
 def calls(tree):
