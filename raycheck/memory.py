@@ -11,7 +11,7 @@ from raycheck.errors import UsageError
 
 PIXEL = 256
 """Bytes a pixel. The certified render holds 177 while it looks for margins: the enclosure's value, radius (3 float64
-each) and doubts (1) make 56, its own value, bound, bits and decided 57, four columns of float64, in tiles and joined, 64.
+each) and doubts (1) make 56, its own value, bound, bits and decided 57, four float64 columns, in tiles and joined, 64.
 Judging a picture against its truth holds 232, most of them both ends of every bound."""
 
 _LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
