@@ -9,6 +9,7 @@ from pathlib import Path
 from raycheck import session
 from raycheck.errors import CONFORMS, UsageError
 from reports import chart, results, stability
+from reports.stored import ResultsError
 
 
 def run(options: Namespace) -> int:
@@ -16,7 +17,7 @@ def run(options: Namespace) -> int:
     folder = Path(options.folder)
     try:
         print(_written(folder, _newest(folder)))
-    except results.ResultsError as error:
+    except ResultsError as error:
         raise UsageError(str(error)) from None
     return CONFORMS
 

@@ -14,7 +14,8 @@ from oracles.measurement import Panel, Point
 from reports import chart, scatter
 from reports.chart import Chart
 from reports.drawings import LogScale, spread, tag
-from reports.results import Machine, ResultsError
+from reports.results import Machine
+from reports.stored import ResultsError
 
 EVIL = '<script>alert(1)</script>"\u202e'
 
