@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+import raycheck
 from raycheck.grading.one import Asked, grade
 from raycheck.grading.rubric import Rubric
 from raycheck.grading.submissions import Submission, found
@@ -38,6 +40,14 @@ RUBRIC = Rubric.model_validate(
 )
 SHORT = {"build": 5.0, "render": 2.0}
 """Limits for those who are to run out of time; nobody else does on a busy machine."""
+OURS = tuple(str(place) for place in (Path.home(), Path(raycheck.__file__).parents[1], tempfile.gettempdir()))
+"""Where who grades keeps things: home, the suite, temporary files."""
+OWNED = f"owned-{os.getpid()}"
+FORBIDDEN = tuple(
+    place / OWNED
+    for place in (Path("/etc"), Path("/usr"), Path.home(), Path(raycheck.__file__).parent, Path(__file__).parent)
+)
+"""Files that nobody may make: of the system, of who grades, of the suite."""
 NONE: Mapping[str, float] = {}
 MARK = "the-rubric-of-this-class"
 
@@ -119,7 +129,7 @@ ATTACKS = {
         "No space left",
     ),
     "disk filler in the root and in dev": Attack(
-        "for p in ('/x', '/dev/x', '/etc/x', '/usr/x', '/root/x'):\n    try: open(p, 'w'); sys.exit(p)\n"
+        f"for p in {('/x', '/dev/x', *map(str, FORBIDDEN))}:\n    try: open(p, 'w'); sys.exit(p)\n"
         "    except OSError: pass\nright()",
         "pass",
     ),
@@ -143,7 +153,7 @@ ATTACKS = {
         "open(image, 'wb').write(bytes.fromhex('762f3101') + os.urandom(9999))", "invalid", "", 'image = "exr"'
     ),
     "reads its neighbours": Attack(
-        "for p in ('..', '../..', '/root', '/home', '/work', os.path.dirname(os.path.dirname(image))):\n"
+        f"for p in ('..', '../..', *{OURS}, os.path.dirname(os.path.dirname(image))):\n"
         "    try: found = os.listdir(p)\n    except OSError: continue\n"
         "    print(p, found)\n"
         "sys.exit(','.join(sorted(os.listdir(os.path.dirname(os.path.dirname(scene))))))",
@@ -151,7 +161,7 @@ ATTACKS = {
         "exit status 1",
     ),
     "reads a golden, the rubric, another submission": Attack(
-        f"hits = subprocess.run(['grep', '-rlsI', '{MARK[:9]}' + '{MARK[9:]}', '/home', '/tmp', '/etc', '/var', '/work'],"  # noqa: E501
+        f"hits = subprocess.run(['grep', '-rlsI', '{MARK[:9]}' + '{MARK[9:]}', *{OURS}, '/tmp', '/etc', '/var'],"
         " capture_output=True, text=True).stdout\nif hits: sys.exit('FOUND ' + hits)\nright()",
         "pass",
     ),
@@ -269,7 +279,8 @@ def test_a_tracer_that_looks_around_sees_only_its_own(
     process = results.read(tmp_path / "out" / "students" / record.slug).verdicts[0].process
     assert process is not None
     seen = dict(line.split(" ", 1) for line in process.output_tail.splitlines() if line[:2].isupper())
-    assert not {"home", "work", "opt", "mnt", "srv", "var", "boot", "sys"} & set(eval(seen["ROOT"]))  # noqa: S307
+    suite = {Path(raycheck.__file__).parts[1]} - {"tmp", "usr"}  # these it has of its own, and to read
+    assert not (suite | {"home", "opt", "mnt", "srv", "var", "boot", "sys"}) & set(eval(seen["ROOT"]))  # noqa: S307
     assert int(seen["PS"]) <= 4
     assert set(eval(seen["ENV"])) <= {"HOME", "LANG", "LC_CTYPE", "PATH", "PWD", "TMPDIR"}  # noqa: S307
 
@@ -279,7 +290,7 @@ BUILDS = {
     "build that hangs": ("sleep 600", "build"),
     "build that forks": ("f() { f | f & }; f; sleep 600", "build"),
     "build that fills the disk": ("while :; do head -c 9000000 /dev/zero > $RANDOM$$.$((n=n+1)); done", "build"),
-    "build that edits the suite": ("touch /usr/owned /root/owned /etc/owned", "build"),
+    "build that edits the suite": (f"touch {shlex.join(map(str, FORBIDDEN))}", "build"),
     "build that preloads": ("export LD_PRELOAD=$PWD/x.so; echo LD_PRELOAD=$PWD/x.so > /tmp/profile; exit 1", "build"),
     "build that replaces its manifest": (
         'printf \'[tracer]\\nname="x"\\nrender=["true"]\\n\' > raycheck.toml',
@@ -297,6 +308,7 @@ def test_a_hostile_build_is_held_too(graded: Callable[..., Record], handed_in: C
     (folder / "Makefile").write_text("all:\n\t@" + command.replace("$", "$$") + "\n", "utf-8")
     record = graded(limits=SHORT if outcome == "build" else {})
     assert record.outcome == outcome, record.message
+    assert not any(path.exists() for path in FORBIDDEN)
     if outcome == "graded":
         assert record.groups[0].lines[0].verdict == "pass"
 
