@@ -7,7 +7,7 @@ import shlex
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -121,6 +121,17 @@ def write(found: results.Results, folder: Path) -> Path:
         return page.write(found, folder)
     except OSError as error:
         raise UsageError(f"the report cannot be written: {error}", WRITABLE) from None
+
+
+def deliver(write: Callable[[], object], lines: Iterable[str], path: Path) -> None:
+    """Write a page, print these lines and where it is; raise UsageError if it cannot be written."""
+    try:
+        write()
+    except OSError as error:
+        raise UsageError(f"the report cannot be written: {error}", WRITABLE) from None
+    for line in lines:
+        print(line)
+    print(f"report: {path}")
 
 
 def tell(found: results.Results, folder: Path) -> None:

@@ -7,17 +7,15 @@ embedded pictures. What came from the tracer is text: made plain, bounded, escap
 from __future__ import annotations
 
 import re
-from base64 import b64encode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from hashlib import sha256
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment
 
 from oracles.verdict import Pixel, Verdict, Word
-from reports import conclusion, format, plain
+from reports import conclusion, format, plain, templating
 from reports.pictures import Picture, gallery
 from reports.results import Results
 from scenes.disk import write_whole
@@ -131,17 +129,9 @@ def _anchor(index: int, check: str) -> str:
 
 @cache
 def environment() -> Environment:
-    """Templates that escape everything and miss nothing."""
-    environment = Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=False,
-    )
+    """The templates of the report, with its filters."""
     shown = ("value", "measure", "count", "share", "seconds", "excess", "off", "unit", "doubtful", "kinds", "shell")
-    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide", "points", "signed")}
+    environment = templating.templates({name: getattr(format, name) for name in (*shown, "slide", "points", "signed")})
     environment.globals["symbols"] = SYMBOLS
     return environment
 
@@ -149,14 +139,4 @@ def environment() -> Environment:
 @cache
 def policy(styles: tuple[str, ...] = ("page.css",), script: str = "page.js") -> str:
     """A page's Content-Security-Policy."""
-    told = " ".join(f"'{_hash(style)}'" for style in styles)
-    return (
-        f"default-src 'none'; img-src data:; style-src {told}; script-src '{_hash(script)}'; "
-        "base-uri 'none'; form-action 'none'"
-    )
-
-
-def _hash(name: str) -> str:
-    """The source expression for a file that the page includes as it stands."""
-    body = environment().get_template(name).render()
-    return f"sha256-{b64encode(sha256(body.encode()).digest()).decode()}"
+    return templating.policy(environment(), styles, script)
