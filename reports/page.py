@@ -129,7 +129,7 @@ def environment() -> Environment:
         keep_trailing_newline=False,
     )
     shown = ("value", "measure", "count", "share", "seconds", "excess", "off", "unit", "doubtful", "kinds", "shell")
-    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide", "points", "signed")}
+    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide", "points", "signed", "triple")}
     environment.globals["symbols"] = SYMBOLS
     return environment
 
