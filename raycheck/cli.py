@@ -156,6 +156,7 @@ def parser() -> Parser:
     faults = _add(commands, "faults", "the known mistakes, or one of them explained")
     faults.add_argument("name", nargs="?", metavar="NAME", help="a name of the list")
     faults.add_argument("--explain", metavar="NAME", help="the same as NAME")
+    faults.add_argument("--out", metavar="DIR", help="write a page for each, or for NAME, with its pictures")
 
     power = _add(commands, "power", "which scenes notice which known mistake, and whether any fails a correct tracer")
     power.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")
