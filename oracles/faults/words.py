@@ -44,6 +44,10 @@ def page() -> str:
         "`raycheck check builtin:fault/upside-down` shows what the suite says of one, and `raycheck power` proves that",
         "every one is noticed and no correct tracer is failed. Written from `oracles/faults`.",
         "",
+        "`raycheck faults --out raycheck-faults` writes a page for each, with an index: what one sees, right and wrong "
+        "picture of the scene that shows it best, right and wrong line, and which scenes notice it "
+        "(`--explain NAME`: that page only). They take a minute or two and are not kept with the source.",
+        "",
         "Wrong lines are as a student writes them. A fault marked *survives* is noticed by no scene of the catalogue, "
         "for the reason given; one marked *equivalent* changes nothing, by the proof given.",
     ]

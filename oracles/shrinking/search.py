@@ -5,8 +5,8 @@ Engineering 28(2), 2002): what can be left out while the failure stays is left o
 smaller in the order of `size`, whose parts are natural numbers, so every search ends; equal answers give equal scenes.
 
 What fails must not come to fail for a reason that the tracer never had to face: no step takes the eye, a light or a
-surface to the other side of a surface, or nearer to one than anything was, or than the gap at which any lawful epsilon
-is harmless.
+surface to the other side of a surface, or nearer to one than the gap at which any lawful epsilon is harmless (where
+something stood nearer already, than that).
 """
 
 from __future__ import annotations
