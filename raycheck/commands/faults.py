@@ -50,9 +50,9 @@ def _pages(chosen: Fault | None, out: Path) -> int:
     progress = Progress("drawing mistakes", len(ladder()) + len(faults))
     try:
         benches = []
-        for entry in ladder():
-            benches.append(Bench(entry.scene().resized(*SIZE), best_lanes()))
-            progress.step(entry.name)
+        for scene_rung in ladder():
+            benches.append(Bench(scene_rung.scene().resized(*SIZE), best_lanes()))
+            progress.step(scene_rung.name)
         found = []
         for entry in faults:
             found.append(_lesson(benches, entry))

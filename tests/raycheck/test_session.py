@@ -133,7 +133,8 @@ def repeated(line: str, raycheck: Callable[..., Any], out: Path) -> Results:
 
 
 def judgement(verdict: Any) -> dict[str, Any]:
-    stripped: dict[str, Any] = without_durations(verdict.model_dump(mode="json"))
+    """All but what names the report's own folder: the shrunk scene and its lines."""
+    stripped: dict[str, Any] = without_durations(verdict.model_dump(mode="json", exclude={"shrunk"}))
     return stripped
 
 
