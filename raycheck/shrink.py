@@ -64,10 +64,10 @@ def shrunk(
     if hearing.subject.spp is not None or isinstance(hearing.subject, ImagesSubject):
         return
     end = time.monotonic() + plan.seconds
-    failing = list(_first(verdicts, rungs))
-    for left, place in zip(range(plan.scenes, 0, -1), failing, strict=False):
+    failing = list(_first(verdicts, rungs))[: plan.scenes]
+    for k, place in enumerate(failing):
         told(f"shrinking {verdicts[place].check}")
-        share = (end - time.monotonic()) / min(left, len(failing))
+        share = (end - time.monotonic()) / (len(failing) - k)
         try:
             found = _smallest(hearing, rungs[verdicts[place].check], plan, share, out)
         except StartError:  # it was there a moment ago; what it was found to be stands
