@@ -1,7 +1,7 @@
 """How small failing scenes become: every fault of the dictionary on the first scene that notices it.
 
 Prints, for all faults together, things, pixels and digits before and after, tries and seconds; and each search that
-did not come to its end within the limits that `raycheck check` sets.
+did not come to its end within the limits that `raycheck check` sets. No correct tracer may fail what is left.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import time
 from collections.abc import Sequence
 
 from oracles.conventions import Convention
-from oracles.faults import FAULTS, Fault
+from oracles.faults import FAULTS, TWINS, Fault, Twin
 from oracles.faults.power import Bench
 from oracles.shrinking import Limits, Step, shrink, size, words
 from raycheck.shrink import Failing, ShrinkPlan
@@ -38,6 +38,8 @@ def main() -> None:
         print(f"{name:<8} {_spread([s[k] for s in before]):>24} -> {_spread([s[k] for s in after])}")
     print(f"{'tries':<8} {_spread([s[-1].tries for s in steps]):>24}")
     print(f"{'seconds':<8} {_spread([seconds for s, seconds in found if s]):>24}")
+    wronged = [f"{twin.name} by {s[-1].scene.name}" for s in steps for twin in TWINS if _wronged(s[-1], twin)]
+    print(f"correct tracers that a shrunk scene fails: {', '.join(wronged) or 'none'} ({len(steps)} x {len(TWINS)})")
     print(f"a single pixel: {sum(s[3] == 1 for s in after)}, at most two things: {sum(s[0] <= 2 for s in after)}")
 
 
@@ -54,6 +56,11 @@ def _shrunk(entry: Rung, fault: Fault) -> tuple[list[Step], float]:
     if steps and not steps[-1].least:
         print(f"{fault.name} on {entry.name}: left at {words(steps[-1].scene)} after {steps[-1].tries} tries")
     return steps, time.monotonic() - begin
+
+
+def _wronged(step: Step, twin: Twin) -> bool:
+    """Whether the shrunk scene fails a correct tracer."""
+    return Bench(step.scene).wrongly_killed(twin) is not None
 
 
 def _spread(values: Sequence[float]) -> str:

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from oracles.compare import compare
-from oracles.faults import fault
+from oracles.faults import TWINS, fault
 from oracles.faults.files import linear
 from oracles.faults.power import Bench, picture
 from oracles.images import Picture
@@ -64,7 +64,7 @@ def last(steps: Any) -> Step:
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_what_is_left_of_a_scene_fails_the_fault_and_passes_the_reference(name: str) -> None:
+def test_what_is_left_of_a_scene_fails_the_fault_and_no_correct_tracer(name: str) -> None:
     scene = killer(name)
 
     def fails(candidate: Scene) -> Pixel | None:
@@ -75,6 +75,8 @@ def test_what_is_left_of_a_scene_fails_the_fault_and_passes_the_reference(name: 
     assert fails(final.scene) == final.pixel
     right = linear(render(final.scene, NumPyBackend(32)).pixels)
     assert compare(right, truth(final.scene, "float32")).judged.outside == 0
+    bench = Bench(final.scene)
+    assert [twin.name for twin in TWINS if bench.wrongly_killed(twin)] == []
     assert size(final.scene) < size(scene)
     assert final.scene.features <= scene.features
     assert last(shrink(scene, fails, FREELY)) == final
