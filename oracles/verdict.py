@@ -134,6 +134,30 @@ class Case(Frozen):
     run: str = ""
 
 
+class Shrunk(Frozen):
+    """The smallest scene found that still fails as the verdict's scene does.
+
+    file: the scene, relative to the results, also as text (empty where long); left: what it holds, in words; under:
+    conventions that were allowed for, empty for the declared ones. pixel: (i, j) of its most wrong one, with its red,
+    green and blue: |got - expected| <= tolerance was to hold in each. least: nothing more can be left out; otherwise
+    the search was ended. run: the tracer's own command on that file; judge: the command that judges it.
+    """
+
+    file: str
+    left: str
+    text: str = ""
+    under: str = ""
+    pixel: tuple[int, int]
+    expected: tuple[float, float, float]
+    tolerance: tuple[float, float, float]
+    got: tuple[float, float, float]
+    unit: Literal["linear", "code"] = "linear"
+    tries: int
+    least: bool
+    run: str = ""
+    judge: str = ""
+
+
 class Verdict(Frozen):
     """One check of one subject."""
 
@@ -148,6 +172,7 @@ class Verdict(Frozen):
     reproduce: str = ""
     judged: Judged | None = None
     case: Case | None = None
+    shrunk: Shrunk | None = None
     sampled: Sampled | None = None
     appearance: Appearance | None = None
     process: Process | None = None

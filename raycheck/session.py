@@ -16,10 +16,12 @@ from oracles.verdict import Diagnosis, Verdict
 from raycheck import VERSION
 from raycheck.diagnosis import diagnosed
 from raycheck.errors import CONFORMS, DIFFERS, INTERRUPTED, UsageError
+from raycheck.filed import filed, is_file
 from raycheck.known import Known
 from raycheck.laws import LawPlan, judge_laws
 from raycheck.machine import machine
 from raycheck.progress import Progress
+from raycheck.shrink import NO_SHRINKING, ShrinkPlan, make_room, shrunk
 from raycheck.subjects import Subject
 from raycheck.suite import Hearing, Plan
 from reports import junit, page, results, summary
@@ -45,6 +47,7 @@ class Order:
     command: str
     repeat: str
     laws: LawPlan = NO_LAWS
+    shrink: ShrinkPlan = NO_SHRINKING
 
 
 def check(order: Order) -> tuple[results.Results, int]:
@@ -53,6 +56,7 @@ def check(order: Order) -> tuple[results.Results, int]:
     started = datetime.now(UTC).isoformat(timespec="seconds")
     plan = Plan(chosen(order.scenes), order.size, order.seed, order.block, order.known, order.repeat)
     _make_room(order.out)
+    make_room(order.out, plan.rungs)
     order.subject.prepare()
     verdicts: list[Verdict] = []
     diagnosis: Diagnosis | None = None
@@ -67,8 +71,10 @@ def check(order: Order) -> tuple[results.Results, int]:
         for verdict in judge_laws(order.subject, order.laws, hearing.convention, tuple(verdicts), order.out):
             verdicts.append(verdict)
             progress.step(verdict.check)
+        complete = True  # what follows explains; an interrupt loses no verdict
         diagnosis = diagnosed(hearing, verdicts, order.out, progress.say)
-        complete = True
+        for place, verdict in shrunk(hearing, order.shrink, tuple(verdicts), order.out, progress.say):
+            verdicts[place] = verdict
     except KeyboardInterrupt:
         print("\ninterrupted: writing what there is", file=sys.stderr)
     except Exception:
@@ -149,11 +155,16 @@ def repeat_line(words: Sequence[str], tail: Sequence[str], asked: str = ONE_SCEN
 
 
 def chosen(names: Sequence[str] | None) -> list[Rung]:
-    """The rungs of these names in the ladder's order; all without names."""
+    """The rungs of these names in the ladder's order, then those of these scene files; all rungs without names."""
     if names is None:
         return list(ladder())
-    wanted = {rung(name).name for name in names}
-    return [entry for entry in ladder() if entry.name in wanted]
+    wanted = {rung(name).name for name in names if not is_file(name)}
+    found = [entry for entry in ladder() if entry.name in wanted]
+    for name in dict.fromkeys(filter(is_file, names)):
+        found.append(filed(name))
+        if any(entry.name == found[-1].name for entry in found[:-1]):
+            raise UsageError(f"{name}: another scene is called {found[-1].name}, too", "one scene of a name")
+    return found
 
 
 def make_folder(folder: Path) -> None:

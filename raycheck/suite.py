@@ -223,7 +223,7 @@ def _start(rung: Rung, plan: Plan, word: str, message: str) -> Verdict:
             "teaches": rung.teaches,
             "formula": formula_of(rung.slide),
             "requires": rung.requires,
-            "reproduce": plan.repeat.format(scene=shlex.quote(rung.name)),
+            "reproduce": plan.repeat.format(scene=shlex.quote(rung.asked)),
         }
     )
 

@@ -131,7 +131,8 @@ def _anchor(index: int, check: str) -> str:
 def environment() -> Environment:
     """The templates of the report, with its filters."""
     shown = ("value", "measure", "count", "share", "seconds", "excess", "off", "unit", "doubtful", "kinds", "shell")
-    environment = templating.templates({name: getattr(format, name) for name in (*shown, "slide", "points", "signed")})
+    named = (*shown, "slide", "points", "signed", "triple")
+    environment = templating.templates({name: getattr(format, name) for name in named})
     environment.globals["symbols"] = SYMBOLS
     return environment
 

@@ -8,6 +8,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from raycheck.errors import UsageError
+from raycheck.filed import is_file
 from raycheck.memory import check_fits
 from raycheck.subjects import Subject, attach, attach_command, dialect_of
 from scenes.catalogue import rung
@@ -88,6 +89,4 @@ def picture_of(name: str, size: str | None) -> Scene:
 
 def scene_of(name: str) -> Scene:
     """A scene by file, or by name in the catalogue."""
-    if name.endswith((".json", ".txt")) or "/" in name:
-        return load(Path(name))
-    return rung(name).scene()
+    return load(Path(name)) if is_file(name) else rung(name).scene()
