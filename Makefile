@@ -28,6 +28,8 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/laws_speed.py
 	$(BIN)/python -P benchmarks/laws_table.py
 	$(BIN)/python -P benchmarks/peers.py
+	$(BIN)/python -P benchmarks/diagnosis.py
+	$(BIN)/python -P benchmarks/shrinking.py
 	$(BIN)/python -P benchmarks/stochastic_gate.py
 	$(BIN)/python -P benchmarks/grading.py
 
@@ -56,4 +58,4 @@ schemas: $(READY)
 	  Path('reports/schema/power-1.json').write_text(power.schema())"
 
 clean:
-	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-stability raycheck-chart raycheck-peers raycheck-power examples/*/tracer
+	rm -rf $(VENV) raycheck-demo raycheck-report raycheck-stability raycheck-chart raycheck-peers raycheck-power raycheck-faults examples/*/tracer

@@ -3,10 +3,15 @@
 Each variant is checked as a stranger's: first without a word about its dialect, which must be inferred; then with
 the lines that were named, under which it must conform. Slips are found, and all pictures right but for them.
 Last, real faults under dialects: found as before, and not explained away.
+
+    python benchmarks/dialects.py [--only WORDS ...]
+
+With --only, the rows whose name holds any of the words.
 """
 
 from __future__ import annotations
 
+import argparse
 import importlib.util
 import tempfile
 import time
@@ -98,23 +103,30 @@ _SIGNS = {
 }
 
 
+def faulty(place: Path, fault: str, dialect: tuple[str, ...]) -> str:
+    """A row: what fails of a fault alone, on its dialect, and where nobody declared that."""
+    alone = wrong(check(variants.write(place / "fault", edits((), (), (fault,))))[0])
+    both, _ = check(variants.write(place / "both", edits(dialect, (), (fault,)), dialect))
+    blind, _ = check(variants.write(place / "blind", edits(dialect, (), (fault,))))
+    same = "the same" if wrong(both) == alone else wrong(both)
+    said = " ".join(told(blind)) or "no dialect named"
+    return f"{len(alone)} checks not passed alone, {same} declared,\n    {len(wrong(blind))} undeclared; {said}"
+
+
 def main() -> None:
-    """All rows."""
+    """All rows that are asked for."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--only", nargs="*", default=[""], metavar="WORDS")
+    only = options.parse_args().only
     here = machine()
     print(f"{here.processor}, {here.cores} cores, Python {here.python}")
     cases = [((name,), ()) for name in variants.DIALECTS] + [((), (name,)) for name in variants.SLIPS]
-    for dialect, slips in [*cases, *COMBINED]:
-        with tempfile.TemporaryDirectory() as place:
-            print(f"{', '.join(dialect + slips):<75} {one(Path(place), dialect, slips)}", flush=True)
-    for fault, dialect in FAULTY:
-        with tempfile.TemporaryDirectory() as place:
-            alone = wrong(check(variants.write(Path(place) / "fault", edits((), (), (fault,))))[0])
-            both, _ = check(variants.write(Path(place) / "both", edits(dialect, (), (fault,)), dialect))
-            blind, _ = check(variants.write(Path(place) / "blind", edits(dialect, (), (fault,))))
-            same = "the same" if wrong(both) == alone else wrong(both)
-            print(f"{fault} on {', '.join(dialect)}: {len(alone)} checks not passed alone, {same} declared,")
-            said = " ".join(told(blind)) or "no dialect named"
-            print(f"    {len(wrong(blind))} undeclared; {said}", flush=True)
+    rows = {", ".join(dialect + slips): (one, dialect, slips) for dialect, slips in [*cases, *COMBINED]}
+    rows |= {f"{fault} on {', '.join(dialect)}": (faulty, fault, dialect) for fault, dialect in FAULTY}
+    for name, (row, *about) in rows.items():
+        if any(words in name for words in only):
+            with tempfile.TemporaryDirectory() as place:
+                print(f"{name:<75} {row(Path(place), *about)}", flush=True)
 
 
 if __name__ == "__main__":

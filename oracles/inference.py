@@ -54,9 +54,13 @@ class Exhibit:
 
     def pixels(self) -> NDArray[np.int64]:
         """The pixels to look at, counted row by row: clear ones, most of them wrong."""
-        clear = (self.declared.doubts == 0) & (self.declared.tolerance.max(axis=-1) <= self.reach)
-        telling = _spread(np.flatnonzero(self.wrong & clear), TELLING)
-        return np.union1d(telling, _spread(np.flatnonzero(clear), OTHERS))
+        clear = self.clear()
+        telling = _spread(clear[self.wrong.ravel()[clear]], TELLING)
+        return np.union1d(telling, _spread(clear, OTHERS))
+
+    def clear(self) -> NDArray[np.int64]:
+        """All pixels that are in no doubt and of no wide tolerance, counted row by row."""
+        return np.flatnonzero((self.declared.doubts == 0) & (self.declared.tolerance.max(axis=-1) <= self.reach))
 
 
 def _spread(indices: NDArray[np.int64], most: int) -> NDArray[np.int64]:

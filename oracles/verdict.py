@@ -134,6 +134,30 @@ class Case(Frozen):
     run: str = ""
 
 
+class Shrunk(Frozen):
+    """The smallest scene found that still fails as the verdict's scene does.
+
+    file: the scene, relative to the results, also as text (empty where long); left: what it holds, in words; under:
+    conventions that were allowed for, empty for the declared ones. pixel: (i, j) of its most wrong one, with its red,
+    green and blue: |got - expected| <= tolerance was to hold in each. least: nothing more can be left out; otherwise
+    the search was ended. run: the tracer's own command on that file; judge: the command that judges it.
+    """
+
+    file: str
+    left: str
+    text: str = ""
+    under: str = ""
+    pixel: tuple[int, int]
+    expected: tuple[float, float, float]
+    tolerance: tuple[float, float, float]
+    got: tuple[float, float, float]
+    unit: Literal["linear", "code"] = "linear"
+    tries: int
+    least: bool
+    run: str = ""
+    judge: str = ""
+
+
 class Verdict(Frozen):
     """One check of one subject."""
 
@@ -148,11 +172,70 @@ class Verdict(Frozen):
     reproduce: str = ""
     judged: Judged | None = None
     case: Case | None = None
+    shrunk: Shrunk | None = None
     sampled: Sampled | None = None
     appearance: Appearance | None = None
     process: Process | None = None
     pictures: Pictures = Pictures()
     seconds: float = 0.0
+
+
+class Suspect(Frozen):
+    """A known fault against a tracer's wrong pictures.
+
+    share: of their residual that it explains alone, each picture counting alike, less what it spoils of the right
+    ones; pictures: wrong ones that it explains alone. The rest is the dictionary's entry.
+    """
+
+    name: str
+    group: str
+    source: str
+    wrong: str
+    right: str
+    seen: str
+    mend: str
+    share: float
+    pictures: int
+
+
+class Located(Frozen):
+    """Where an error lives that no known fault explains.
+
+    term: of the shading sum; formula: as it should be; likeness: how alike its pictures are to those of the fault
+    `like`, 0 to 1; laws: those of the term's formulas that the tracer's own answers break.
+    """
+
+    term: str
+    formula: str
+    slide: str
+    likeness: float
+    like: str
+    laws: tuple[str, ...] = ()
+
+
+class Diagnosis(Frozen):
+    """What explains a tracer's wrong pictures.
+
+    kind: `named` where the faults explain every picture, wrong and right; `likely` where they explain some of the
+    wrong ones; `unknown` where no known fault does. failing: wrong pictures; explained: those that the faults
+    together explain; alike: faults that make the very same pictures; others: the next best alone; check: the first
+    wrong picture that the faults explain, else the first; pixel: where that is wrong at first; picture: what the
+    faults make of it.
+    """
+
+    kind: Literal["named", "likely", "unknown"]
+    sentence: str
+    failing: int
+    explained: int
+    share: float
+    faults: tuple[Suspect, ...] = ()
+    alike: tuple[str, ...] = ()
+    others: tuple[Suspect, ...] = ()
+    located: Located | None = None
+    check: str = ""
+    pixel: tuple[int, int] | None = None
+    reproduce: str = ""
+    picture: str | None = None
 
 
 class Standing(Frozen):

@@ -52,7 +52,7 @@ def parser() -> Parser:
     check = _add(commands, "check", "run the conformance suite against a tracer", SUBJECT)
     _subject(check)
     check.add_argument(
-        "--scenes", metavar="A,B", help="only these scenes of the catalogue (see raycheck scenes), and no laws"
+        "--scenes", metavar="A,B", help="only these scenes (see raycheck scenes) or scene files, and no laws"
     )
     check.add_argument("--laws", metavar="A,B", help="only these laws or groups of laws (see docs/laws.md)")
     check.add_argument(
@@ -63,6 +63,7 @@ def parser() -> Parser:
     check.add_argument("--seed", type=int, default=0, metavar="N", help="handed to the tracer as {seed} (%(default)s)")
     check.add_argument("--known", metavar="FILE", help="TOML list of known failures: [[known]] check, reason, url")
     check.add_argument("--no-block", action="store_true", help="ask every rung, even where one it builds on failed")
+    check.add_argument("--no-shrink", action="store_true", help="do not look for the smallest scenes that fail")
     check.add_argument(
         "--sandbox", action="store_true", help="build and run a copy of the folder where it reaches nothing"
     )
@@ -155,6 +156,7 @@ def parser() -> Parser:
     faults = _add(commands, "faults", "the known mistakes, or one of them explained")
     faults.add_argument("name", nargs="?", metavar="NAME", help="a name of the list")
     faults.add_argument("--explain", metavar="NAME", help="the same as NAME")
+    faults.add_argument("--out", metavar="DIR", help="write a page for each, or for NAME, with its pictures")
 
     power = _add(commands, "power", "which scenes notice which known mistake, and whether any fails a correct tracer")
     power.add_argument("--size", metavar="WxH", help="picture size instead of each scene's own; pixels stay square")

@@ -30,5 +30,5 @@ FORMULAS = {
 
 
 def formula_of(slide: str) -> str:
-    """The formula of a slide of the catalogue."""
-    return FORMULAS[slide]
+    """The formula of a slide of the catalogue; empty for others."""
+    return FORMULAS.get(slide, "")

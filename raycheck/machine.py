@@ -9,6 +9,7 @@ from importlib import metadata
 from pathlib import Path
 
 from raycheck.lanes import best_lanes
+from raycheck.memory import physical
 from reference_tracer import llvm
 from reports.results import Machine
 
@@ -20,7 +21,7 @@ def machine() -> Machine:
     return Machine(
         processor=_processor(),
         cores=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
-        memory_gib=round(_memory(), 1),
+        memory_gib=round(physical() / 2**30, 1),
         system=f"{platform.system()} {platform.release()}",
         python=platform.python_version(),
         packages={name: version for name in PACKAGES if (version := _version(name))},
@@ -34,13 +35,6 @@ def _processor() -> str:
     except OSError:
         found = None
     return found.group(1).strip() if found else platform.processor() or platform.machine()
-
-
-def _memory() -> float:
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
-    except (ValueError, OSError, AttributeError):
-        return 0.0
 
 
 def _version(package: str) -> str | None:

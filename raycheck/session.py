@@ -7,18 +7,21 @@ import shlex
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from oracles.verdict import Verdict
+from oracles.verdict import Diagnosis, Verdict
 from raycheck import VERSION
+from raycheck.diagnosis import diagnosed
 from raycheck.errors import CONFORMS, DIFFERS, INTERRUPTED, UsageError
+from raycheck.filed import filed, is_file
 from raycheck.known import Known
 from raycheck.laws import LawPlan, judge_laws
 from raycheck.machine import machine
 from raycheck.progress import Progress
+from raycheck.shrink import NO_SHRINKING, ShrinkPlan, make_room, shrunk
 from raycheck.subjects import Subject
 from raycheck.suite import Hearing, Plan
 from reports import junit, page, results, summary
@@ -44,6 +47,7 @@ class Order:
     command: str
     repeat: str
     laws: LawPlan = NO_LAWS
+    shrink: ShrinkPlan = NO_SHRINKING
 
 
 def check(order: Order) -> tuple[results.Results, int]:
@@ -52,8 +56,10 @@ def check(order: Order) -> tuple[results.Results, int]:
     started = datetime.now(UTC).isoformat(timespec="seconds")
     plan = Plan(chosen(order.scenes), order.size, order.seed, order.block, order.known, order.repeat)
     _make_room(order.out)
+    make_room(order.out, plan.rungs)
     order.subject.prepare()
     verdicts: list[Verdict] = []
+    diagnosis: Diagnosis | None = None
     complete = False
     progress = Progress(f"checking {order.subject.name}", _planned(order, plan))
     try:
@@ -65,16 +71,19 @@ def check(order: Order) -> tuple[results.Results, int]:
         for verdict in judge_laws(order.subject, order.laws, hearing.convention, tuple(verdicts), order.out):
             verdicts.append(verdict)
             progress.step(verdict.check)
-        complete = True
+        complete = True  # what follows explains; an interrupt loses no verdict
+        diagnosis = diagnosed(hearing, verdicts, order.out, progress.say)
+        for place, verdict in shrunk(hearing, order.shrink, tuple(verdicts), order.out, progress.say):
+            verdicts[place] = verdict
     except KeyboardInterrupt:
         print("\ninterrupted: writing what there is", file=sys.stderr)
     except Exception:
         if verdicts:
-            write(_results(order, plan, verdicts, False, started, begin), order.out)
+            write(_results(order, plan, verdicts, None, False, started, begin), order.out)
         raise
     finally:
         progress.close()
-    found = _results(order, plan, verdicts, complete, started, begin)
+    found = _results(order, plan, verdicts, diagnosis, complete, started, begin)
     write(found, order.out)
     if not complete:
         return found, INTERRUPTED
@@ -86,7 +95,13 @@ def _planned(order: Order, plan: Plan) -> int:
 
 
 def _results(
-    order: Order, plan: Plan, verdicts: Sequence[Verdict], complete: bool, started: str, begin: float
+    order: Order,
+    plan: Plan,
+    verdicts: Sequence[Verdict],
+    diagnosis: Diagnosis | None,
+    complete: bool,
+    started: str,
+    begin: float,
 ) -> results.Results:
     return results.Results(
         suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
@@ -99,6 +114,7 @@ def _results(
         seconds=time.monotonic() - begin,
         planned=_planned(order, plan),
         verdicts=tuple(verdicts),
+        diagnosis=diagnosis,
         complete=complete,
     )
 
@@ -111,6 +127,17 @@ def write(found: results.Results, folder: Path) -> Path:
         return page.write(found, folder)
     except OSError as error:
         raise UsageError(f"the report cannot be written: {error}", WRITABLE) from None
+
+
+def deliver(write: Callable[[], object], lines: Iterable[str], path: Path) -> None:
+    """Write a page, print these lines and where it is; raise UsageError if it cannot be written."""
+    try:
+        write()
+    except OSError as error:
+        raise UsageError(f"the report cannot be written: {error}", WRITABLE) from None
+    for line in lines:
+        print(line)
+    print(f"report: {path}")
 
 
 def tell(found: results.Results, folder: Path) -> None:
@@ -128,11 +155,16 @@ def repeat_line(words: Sequence[str], tail: Sequence[str], asked: str = ONE_SCEN
 
 
 def chosen(names: Sequence[str] | None) -> list[Rung]:
-    """The rungs of these names in the ladder's order; all without names."""
+    """The rungs of these names in the ladder's order, then those of these scene files; all rungs without names."""
     if names is None:
         return list(ladder())
-    wanted = {rung(name).name for name in names}
-    return [entry for entry in ladder() if entry.name in wanted]
+    wanted = {rung(name).name for name in names if not is_file(name)}
+    found = [entry for entry in ladder() if entry.name in wanted]
+    for name in dict.fromkeys(filter(is_file, names)):
+        found.append(filed(name))
+        if any(entry.name == found[-1].name for entry in found[:-1]):
+            raise UsageError(f"{name}: another scene is called {found[-1].name}, too", "one scene of a name")
+    return found
 
 
 def make_folder(folder: Path) -> None:

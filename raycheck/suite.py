@@ -56,7 +56,7 @@ class Hearing:
     """One subject before the suite: what it was asked, what it answered, and what that came to.
 
     `verdicts` asks and judges by the declared dialect; `reconsidered` judges all again by the conventions that the
-    pictures follow, if these are others. `convention`: what it is judged by.
+    pictures follow, if these are others. `convention`: what it is judged by; `exhibits`: the pictures under it.
     """
 
     def __init__(self, subject: Subject, plan: Plan, folder: Path) -> None:
@@ -96,7 +96,12 @@ class Hearing:
         if not worth_saying(before, after):
             return list(verdicts)
         self.convention = found
-        return [*self._findings(found, after), *self._under(found, again)]
+        reconsidered = [*self._findings(found, after), *self._under(found, again)]
+        self.exhibits = {
+            name: Exhibit(found.slip.undone(self.exhibits[name].picture), expected, comparison.outside)
+            for name, (expected, comparison) in again.items()
+        }
+        return reconsidered
 
     def _worth_asking(self, verdict: Verdict, words: dict[str, str]) -> bool:
         """A blocked rung's picture may still tell the convention, if what blocks it is a wrong picture."""
@@ -218,7 +223,7 @@ def _start(rung: Rung, plan: Plan, word: str, message: str) -> Verdict:
             "teaches": rung.teaches,
             "formula": formula_of(rung.slide),
             "requires": rung.requires,
-            "reproduce": plan.repeat.format(scene=shlex.quote(rung.name)),
+            "reproduce": plan.repeat.format(scene=shlex.quote(rung.asked)),
         }
     )
 

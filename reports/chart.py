@@ -6,13 +6,12 @@ import json
 from pathlib import Path
 from typing import Literal
 
-from pydantic import ValidationError
-
 from oracles.measurement import Panel, Point
 from oracles.verdict import Frozen
 from reports import measured, plain, scatter
-from reports.results import MAX_BYTES, Machine, ResultsError
-from scenes.disk import read_bounded, write_whole
+from reports.results import Machine
+from reports.stored import stored
+from scenes.disk import write_whole
 
 FILE = "chart.json"
 PAGE = "index.html"
@@ -51,13 +50,7 @@ def text(found: Chart) -> str:
 
 def read(folder: Path) -> Chart:
     """Read and validate chart.json; raise ResultsError."""
-    path = folder / FILE
-    try:
-        return Chart.model_validate_json(read_bounded(path, MAX_BYTES))
-    except OSError as error:
-        raise ResultsError(f"{path}: {error.strerror}; expected a folder of `raycheck chart`") from None
-    except ValidationError as error:
-        raise ResultsError(f"{path}: {measured.first(error)}; expected measurements of schema version 1") from None
+    return stored(Chart, folder / FILE, "raycheck chart", "measurements")
 
 
 def schema() -> str:

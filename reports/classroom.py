@@ -11,6 +11,7 @@ from pathlib import Path
 from oracles.verdict import Frozen
 from reports import class_chart, page, plain, platforms, results
 from reports.grades import WORDS, Graded
+from reports.stored import ResultsError
 from scenes.disk import write_whole
 
 CSV = "grades.csv"
@@ -129,7 +130,7 @@ def student(graded: Graded, folder: Path) -> str:
     told = {"graded": cleaned(graded), "policy": page.policy(STYLES), "words": WORDS}
     try:
         found = results.read(folder)
-    except results.ResultsError:
+    except ResultsError:
         return page.environment().get_template("ungraded.html").render(**told)
     return page.render(found, folder, "student.html", **told)
 

@@ -17,6 +17,11 @@ def value(x: float) -> str:
     return f"{x:.9g}"
 
 
+def triple(values: tuple[float, float, float]) -> str:
+    """Red, green and blue."""
+    return ", ".join(map(value, values))
+
+
 def measure(x: float) -> str:
     """An error, a bound, a ratio: three significant digits."""
     return f"{x:.3g}"

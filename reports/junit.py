@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-from oracles.verdict import Case, Judged, Verdict, Word
+from oracles.verdict import Case, Judged, Shrunk, Verdict, Word
 from reports import conclusion, format, plain
 from reports.results import Results
 from scenes.disk import write_whole
@@ -90,6 +90,8 @@ def _evidence(verdict: Verdict) -> Iterator[str]:
         yield from _numbers(verdict.judged)
     if verdict.case:
         yield from _case_told(verdict.case)
+    if verdict.shrunk:
+        yield from _shrunk_told(verdict.shrunk)
     if verdict.process:
         yield f"process: {format.shell(verdict.process.command)}: {verdict.process.status}"
         yield verdict.process.output_tail
@@ -105,6 +107,14 @@ def _case_told(case: Case) -> Iterator[str]:
         )
     if case.run:
         yield f"this case: {case.run}"
+
+
+def _shrunk_told(shrunk: Shrunk) -> Iterator[str]:
+    yield (
+        f"smallest scene that fails: {shrunk.file} ({shrunk.left}): pixel {shrunk.pixel}: expected "
+        f"{format.triple(shrunk.expected)}, got {format.triple(shrunk.got)}"
+    )
+    yield f"judge it: {shrunk.judge}"
 
 
 def _numbers(judged: Judged) -> Iterator[str]:

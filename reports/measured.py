@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from base64 import b64encode
 from functools import cache
-from hashlib import sha256
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from pydantic import ValidationError
+from jinja2 import Environment
 
-from reports import format
+from reports import format, templating
 
 _POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -52,13 +49,6 @@ def duration(seconds: float) -> str:
     return f"{seconds * 1e9:.3g} ns"
 
 
-def first(error: ValidationError) -> str:
-    """Where a file first breaks its schema, and how."""
-    found = error.errors(include_url=False)[0]
-    place = ".".join(str(part) for part in found["loc"]) or "the file"
-    return f"{place}: {found['msg']}"
-
-
 def page(template: str, **values: object) -> str:
     """A page of this look with these values."""
     return _environment().get_template(template).render(policy=_policy(), **values)
@@ -66,22 +56,11 @@ def page(template: str, **values: object) -> str:
 
 @cache
 def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=False,
-    )
-    environment.filters |= {"number": number, "rate": rate, "duration": duration, "measure": format.measure}
-    environment.filters |= {"seconds": format.seconds, "slide": format.slide}
-    return environment
+    filters = {"number": number, "rate": rate, "duration": duration, "measure": format.measure}
+    return templating.templates(filters | {"seconds": format.seconds, "slide": format.slide})
 
 
 @cache
 def _policy() -> str:
     """Nothing but this page's own style and its empty icon: no script, no picture from elsewhere."""
-    body = _environment().get_template("measured.css").render()
-    digest = b64encode(sha256(body.encode()).digest()).decode()
-    return f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
+    return templating.policy(_environment(), ("measured.css",))

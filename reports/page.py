@@ -7,17 +7,15 @@ embedded pictures. What came from the tracer is text: made plain, bounded, escap
 from __future__ import annotations
 
 import re
-from base64 import b64encode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from hashlib import sha256
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment
 
 from oracles.verdict import Pixel, Verdict, Word
-from reports import conclusion, format, plain
+from reports import conclusion, format, plain, templating
 from reports.pictures import Picture, gallery
 from reports.results import Results
 from scenes.disk import write_whole
@@ -83,6 +81,7 @@ def render(results: Results, folder: Path, template: str = FILE, **more: object)
             blocked=_with(entries, "blocked"),
             open=_with(entries, *conclusion.OPEN),
             passed=_with(entries, "pass"),
+            diagnosed=_diagnosed(clean, folder),
             anchors={entry.verdict.check: entry.anchor for entry in reversed(entries)},
             **({"policy": policy()} | more),
         )
@@ -97,6 +96,17 @@ def _entries(results: Results, folder: Path) -> list[Entry]:
         Entry(_anchor(index, verdict.check), verdict, {kind: found[name] for kind, name in _pictures(verdict)})
         for index, verdict in enumerate(results.verdicts, start=1)
     ]
+
+
+def _diagnosed(results: Results, folder: Path) -> dict[str, Picture]:
+    """The picture pair of the diagnosis, and what the faults that it names make of the scene."""
+    found = results.diagnosis
+    verdict = next((v for v in results.verdicts if found and v.check == found.check), None)
+    if found is None or verdict is None:
+        return {}
+    names = {"expected": verdict.pictures.expected, "got": verdict.pictures.got, "with the fault": found.picture}
+    shown = gallery(folder, [name for name in names.values() if name])
+    return {kind: shown[name] for kind, name in names.items() if name}
 
 
 def _pictures(verdict: Verdict) -> Iterator[tuple[str, str]]:
@@ -119,17 +129,10 @@ def _anchor(index: int, check: str) -> str:
 
 @cache
 def environment() -> Environment:
-    """Templates that escape everything and miss nothing."""
-    environment = Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=False,
-    )
+    """The templates of the report, with its filters."""
     shown = ("value", "measure", "count", "share", "seconds", "excess", "off", "unit", "doubtful", "kinds", "shell")
-    environment.filters |= {name: getattr(format, name) for name in (*shown, "slide", "points", "signed", "times")}
+    named = (*shown, "slide", "points", "signed", "times", "triple")
+    environment = templating.templates({name: getattr(format, name) for name in named})
     environment.globals["symbols"] = SYMBOLS
     return environment
 
@@ -137,14 +140,4 @@ def environment() -> Environment:
 @cache
 def policy(styles: tuple[str, ...] = ("page.css",), script: str = "page.js") -> str:
     """A page's Content-Security-Policy."""
-    told = " ".join(f"'{_hash(style)}'" for style in styles)
-    return (
-        f"default-src 'none'; img-src data:; style-src {told}; script-src '{_hash(script)}'; "
-        "base-uri 'none'; form-action 'none'"
-    )
-
-
-def _hash(name: str) -> str:
-    """The source expression for a file that the page includes as it stands."""
-    body = environment().get_template(name).render()
-    return f"sha256-{b64encode(sha256(body.encode()).digest()).decode()}"
+    return templating.policy(environment(), styles, script)

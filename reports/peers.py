@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import statistics
-from base64 import b64encode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment
 
 from oracles.verdict import Frozen, SceneStandings, Standing
-from reports import format, plain
+from reports import format, plain, templating
 from reports.results import Machine
 from scenes.disk import write_whole
 
@@ -116,20 +114,10 @@ def _place(value: float, values: list[float]) -> float:
 
 @cache
 def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {"measure": format.measure, "seconds": format.seconds, "plain": plain.text}
-    return environment
+    return templating.templates({"measure": format.measure, "seconds": format.seconds, "plain": plain.text})
 
 
 @cache
 def _policy() -> str:
     """The page's Content-Security-Policy: its own style and nothing else."""
-    body = _environment().get_template("page.css").render()
-    digest = b64encode(sha256(body.encode()).digest()).decode()
-    return f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
+    return templating.policy(_environment(), ("page.css",))

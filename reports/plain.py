@@ -72,7 +72,8 @@ def walk(value: Any) -> Any:
     return _walk(value, "")
 
 
-_FIELDS = {"message": paragraph, "output_tail": tail, "reproduce": command, "command": command, "run": command}
+_FIELDS = dict.fromkeys(("reproduce", "command", "run", "judge"), command)
+_FIELDS |= {"message": paragraph, "sentence": paragraph, "output_tail": tail, "text": tail}
 
 
 def _single(raw: str) -> str:

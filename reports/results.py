@@ -6,13 +6,11 @@ import json
 from pathlib import Path
 from typing import Literal
 
-from pydantic import ValidationError
-
-from oracles.verdict import CONFORMING, Frozen, Verdict
-from scenes.disk import read_bounded, write_whole
+from oracles.verdict import CONFORMING, Diagnosis, Frozen, Verdict
+from reports.stored import stored
+from scenes.disk import write_whole
 
 FILE = "results.json"
-MAX_BYTES = 64 * 2**20
 
 
 class Subject(Frozen):
@@ -48,7 +46,8 @@ class Suite(Frozen):
 class Results(Frozen):
     """One run of the suite against one subject.
 
-    planned: checks that were meant to run; complete: False if the run was cut off before them.
+    planned: checks that were meant to run; diagnosis: what explains those that fail; complete: False if the run was
+    cut off before them.
     """
 
     schema_version: Literal[1] = 1
@@ -62,6 +61,7 @@ class Results(Frozen):
     seconds: float = 0.0
     planned: int
     verdicts: tuple[Verdict, ...]
+    diagnosis: Diagnosis | None = None
     complete: bool
 
     @property
@@ -78,10 +78,6 @@ class Results(Frozen):
         return found
 
 
-class ResultsError(Exception):
-    """results.json is missing or not what this version reads."""
-
-
 def write(results: Results, folder: Path) -> Path:
     """Write results.json whole or not at all; return its path."""
     path = folder / FILE
@@ -90,18 +86,8 @@ def write(results: Results, folder: Path) -> Path:
 
 
 def read(folder: Path) -> Results:
-    """Read and validate results.json of a report folder."""
-    path = folder / FILE
-    try:
-        data = read_bounded(path, MAX_BYTES)
-    except OSError as error:
-        raise ResultsError(f"{path}: {error.strerror}; expected a folder written by `raycheck check`") from None
-    try:
-        return Results.model_validate_json(data)
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise ResultsError(f"{path}: {place}: {first['msg']}; expected results of schema version 1") from None
+    """Read and validate results.json of a report folder; raise ResultsError."""
+    return stored(Results, folder / FILE, "raycheck check", "results")
 
 
 def schema() -> str:

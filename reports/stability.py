@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from pydantic import ValidationError
-
 from oracles.measurement import Case, Depth, Experiment, Frontier, Question, Start
 from oracles.verdict import Frozen
 from reports import drawings, measured, plain
-from reports.results import MAX_BYTES, Machine, ResultsError
-from scenes.disk import read_bounded, write_whole
+from reports.results import Machine
+from reports.stored import stored
+from scenes.disk import write_whole
 
 FILE = "stability.json"
 PAGE = "index.html"
@@ -54,13 +53,7 @@ def write(found: Stability, folder: Path) -> Path:
 
 def read(folder: Path) -> Stability:
     """Read and validate stability.json; raise ResultsError."""
-    path = folder / FILE
-    try:
-        return Stability.model_validate_json(read_bounded(path, MAX_BYTES))
-    except OSError as error:
-        raise ResultsError(f"{path}: {error.strerror}; expected a folder of `raycheck stability`") from None
-    except ValidationError as error:
-        raise ResultsError(f"{path}: {measured.first(error)}; expected measurements of schema version 1") from None
+    return stored(Stability, folder / FILE, "raycheck stability", "measurements")
 
 
 def schema() -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from oracles.verdict import Verdict
+from oracles.verdict import Diagnosis, Verdict
 from reports import conclusion, plain
 from reports.results import Results
 
@@ -17,7 +17,17 @@ def lines(results: Results) -> list[str]:
         *(f"{v.verdict:{word}}  {v.check:{check}}  {_message(v)}".rstrip() for v in told),
         ", ".join(f"{n} {name}" for name, n in conclusion.counts(clean)) or "0 checks",
         f"{clean.subject.name} {conclusion.sentence(clean)}",
+        *(_diagnosis(clean.diagnosis) if clean.diagnosis else ()),
     ]
+
+
+def _diagnosis(found: Diagnosis) -> list[str]:
+    """The sentence, and of each fault the line as it is written and as it should be."""
+    lines = [f"diagnosis: {found.sentence}"]
+    for fault in found.faults:
+        lines += [f"  {fault.name}: {fault.seen} ({fault.source})"]
+        lines += [f"    wrong: {fault.wrong}", f"    right: {fault.right}", f"    mend:  {fault.mend}"]
+    return lines
 
 
 def _message(verdict: Verdict) -> str:

@@ -81,13 +81,16 @@ class Lanes:
         self.backend.evaluate((found,))
         return found
 
+    def loop(self) -> tuple[Vec, Vec, Any, Any, Any]:
+        """What the inner loop goes over: rays, spheres, how many these are, and where each ray starts: on none."""
+        o, v, spheres = scenery(self.rays)
+        table = self.backend.packets([tuple(row) for row in spheres.tolist()])
+        nowhere = self.backend.indices(0, self.rays) * 0 - 1
+        return self.vec(o), self.vec(v), table, self.backend.count(SPHERES), nowhere
+
     def sphere_work(self, rules: Rulebook) -> Work:
         """The nearest of SPHERES spheres for many rays; a unit is one test."""
-        o, v, spheres = scenery(self.rays)
-        origin, direction = self.vec(o), self.vec(v)
-        table = self.backend.packets([tuple(row) for row in spheres.tolist()])
-        count = self.backend.count(SPHERES)
-        nowhere = self.backend.indices(0, self.rays) * 0 - 1
+        origin, direction, table, count, nowhere = self.loop()
 
         def step(k: Any, state: Any) -> Any:
             cx, cy, cz, r = self.backend.packet(table, k)
@@ -157,11 +160,7 @@ class BallLanes(Lanes):
         return Ball(found, found - found, self.ball)
 
     def sphere_work(self, rules: Rulebook) -> Work:
-        o, v, spheres = scenery(self.rays)
-        origin, direction = self.vec(o), self.vec(v)
-        table = self.backend.packets([tuple(row) for row in spheres.tolist()])
-        count = self.backend.count(SPHERES)
-        nowhere = self.backend.indices(0, self.rays) * 0 - 1
+        origin, direction, table, count, nowhere = self.loop()
 
         def step(k: Any, state: Any) -> Any:
             cx, cy, cz, r = (self._exact(x) for x in self.backend.packet(table, k))

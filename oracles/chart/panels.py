@@ -13,6 +13,7 @@ from oracles.chart.arithmetics import Answers, Arithmetic, BallLanes, Lanes, Sca
 from oracles.chart.timing import Times, Work, interleaved
 from oracles.measurement import Panel, Point
 from oracles.stability import strata, truth
+from oracles.stability.frontiers import GOOD
 from oracles.stability.strata import Rays
 from reference_tracer.lanes.render import backend
 from reference_tracer.methods import REFRACT, SPHERE
@@ -23,8 +24,6 @@ ROUNDS = 30
 NUMPY_RAYS = 8192
 DRJIT_RAYS = 2**17
 SCALAR_RAYS = 12
-GOOD = 1e-3
-"""An error above this share of the radius (of λ, of a unit direction) counts as wrong."""
 TEST = "one ray against one sphere, on one core"
 
 

@@ -8,10 +8,15 @@ from itertools import groupby
 from oracles.faults import FAULTS, TWINS, Fault
 
 
+def in_groups() -> list[Fault]:
+    """All entries, those of a group together."""
+    return sorted(FAULTS, key=_place)
+
+
 def listed() -> Iterator[str]:
     """One line a fault, by group."""
     width = max(len(fault.name) for fault in FAULTS)
-    for group, faults in groupby(sorted(FAULTS, key=_place), key=lambda fault: fault.group):
+    for group, faults in groupby(in_groups(), key=lambda fault: fault.group):
         yield f"{group}:"
         yield from (f"  {fault.name:<{width}}  {fault.seen}{_mark(fault)}" for fault in faults)
 
@@ -39,10 +44,14 @@ def page() -> str:
         "`raycheck check builtin:fault/upside-down` shows what the suite says of one, and `raycheck power` proves that",
         "every one is noticed and no correct tracer is failed. Written from `oracles/faults`.",
         "",
+        "`raycheck faults --out raycheck-faults` writes a page for each, with an index: what one sees, right and wrong "
+        "picture of the scene that shows it best, right and wrong line, and which scenes notice it "
+        "(`--explain NAME`: that page only). They take a minute or two and are not kept with the source.",
+        "",
         "Wrong lines are as a student writes them. A fault marked *survives* is noticed by no scene of the catalogue, "
         "for the reason given; one marked *equivalent* changes nothing, by the proof given.",
     ]
-    for group, faults in groupby(sorted(FAULTS, key=_place), key=lambda fault: fault.group):
+    for group, faults in groupby(in_groups(), key=lambda fault: fault.group):
         lines += ["", f"## {group.capitalize()}", "", "| fault | wrong | right | seen | mend | source |"]
         lines += ["|---|---|---|---|---|---|", *map(_row, faults)]
     lines += ["", "## Twins", "", "Correct tracers, which nothing may fail.", "", "| twin | how |", "|---|---|"]

@@ -101,9 +101,9 @@ class Dice:
 
     def circle(self) -> tuple[Reals, Reals]:
         """Cosine and sine of an angle, exactly 0 and ±1 at quarter turns."""
-        angle = 2.0 * np.pi * self.roll()
-        x, y = np.cos(angle), np.sin(angle)
-        return np.where(np.abs(x) < 1e-15, 0.0, x), np.where(np.abs(y) < 1e-15, 0.0, y)
+        turn = self.roll()
+        angle, half = 2.0 * np.pi * turn, turn % 0.5
+        return np.where(half == 0.25, 0.0, np.cos(angle)), np.where(half == 0.0, 0.0, np.sin(angle))
 
     def turn(self) -> Turn:
         """An exact rotation or mirroring, the identity at coordinates 0."""

@@ -14,6 +14,7 @@ from oracles.laws.arrays import JUDGE, Reals, dot, length, scaled, table, wide
 from oracles.laws.dice import Dice
 from oracles.laws.law import Ask, Reading, law
 from oracles.laws.rays import SAFETY
+from reference_tracer.numbers import TINY_32, TINY_64
 
 COSINE = "uRT-06-RT2-2DLight"
 EFFECT = "Phong Effect"
@@ -23,8 +24,9 @@ BASE = 20.0
 """Units of u that r∘(-v) may be off by: 9 of the reflection, 4 of the inner product, and what rounding leaves of
 three unit vectors."""
 
-FLUSHED = {2.0**-24: 1e-36, 2.0**-53: 1e-300}
-"""Powers below this may be taken as 0: subnormals are flushed by some processors' vector units."""
+FLUSHED = {2.0**-24: TINY_32, 2.0**-53: TINY_64}
+"""Powers below this may be taken as 0: subnormals are flushed by some processors' vector units, and our own lanes take
+so much to be 0 that all of them agree."""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import numpy as np
 from oracles.measurement import Answer, Case, Precision
 from oracles.stability import truth
 from oracles.stability.cases_of_tracers import tracer_cases
+from oracles.stability.frontiers import GOOD
 from oracles.stability.probe import (
     DTYPES,
     ROUNDOFF,
@@ -24,8 +25,6 @@ from oracles.stability.probe import (
 Triple = tuple[float, float, float]
 Z: Triple = (0.0, 0.0, 1.0)
 CENTRE: Triple = (0.0, 0.0, 0.0)
-ALLOWED = 1e-3
-"""Of the smaller of r and λ: what a frontier allows too."""
 SPHERE_SLIDE = "Ray Tracing with a Sphere"
 REFRACT_SLIDE = "Refraction Vector Calculation"
 
@@ -41,7 +40,7 @@ class SphereInput:
     v: Triple = Z
     c: Triple = CENTRE
     r: float = 1.0
-    allowed: float = ALLOWED
+    allowed: float = GOOD  # of the smaller of r and λ
 
 
 SPHERES = (
@@ -151,7 +150,7 @@ def _world_point_first(o: Any, v: Any, c: Any, r: Any, true: truth.Exact) -> Ans
     D = r * r - (across * across).sum(axis=1, dtype=o.dtype)
     point = o + v * (along - np.sqrt(np.maximum(D, 0)))[:, None]
     got = ((point - o) * v).sum(axis=1, dtype=o.dtype)
-    right = bool(true.error(got)[0] <= ALLOWED)
+    right = bool(true.error(got)[0] <= GOOD)
     return Answer(who="distance from the world-space hit point", got=_distance(float(got[0])), right=right)
 
 
@@ -187,7 +186,7 @@ def _silhouettes() -> Iterator[Case]:
         answers = []
         for probe in sphere_methods("float32"):
             seen = _seen_radius(probe, D)
-            answers.append(Answer(who=probe.name, got=f"{seen:.5g} r", right=abs(seen - 1.0) <= ALLOWED))
+            answers.append(Answer(who=probe.name, got=f"{seen:.5g} r", right=abs(seen - 1.0) <= GOOD))
         yield Case(
             number=4,
             title=f"The silhouette from D = {D:g}",

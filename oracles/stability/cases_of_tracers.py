@@ -18,6 +18,8 @@ from scenes.model import Scene
 
 SEED = 14
 FMIN = 1e10
+DEGREES_LOST = math.degrees(16 * 2.0**-53)
+"""What float64 may lose of a mirror direction's angle: 9u of the direction itself, and the angles on the way there."""
 
 
 def tracer_cases() -> Iterator[Case]:
@@ -43,7 +45,7 @@ def _reflections() -> Iterator[Case]:
         for name, formula in formulas.items():
             r = formula(i, n)
             off = abs(math.degrees(math.atan2(-r.x, r.z)) - degrees)
-            answers.append(Answer(who=name, got=f"{degrees - off:.3g}°", right=off < 1e-9))
+            answers.append(Answer(who=name, got=f"{degrees - off:.3g}°", right=off < DEGREES_LOST))
         yield Case(
             number=13,
             title=f"Reflection at {degrees}°",

@@ -25,7 +25,7 @@ STEPS = 8
 """A decade."""
 GOOD = 1e-3
 """What a frontier asks of an error, and how near the silhouette it asks for right decisions: a thousandth of the radius
-is a pixel of a sphere that is drawn a thousand pixels high."""
+is a pixel of a sphere that is drawn a thousand pixels high. Named cases and charts ask the same."""
 
 DISTANCE = Question(
     name="distance", title="Hit point within r/1000, impacts up to 0.9 r", unit="D = |b|/r", farther="up"

@@ -11,6 +11,7 @@ from raycheck.commands.options import command_line, size_of, subject_of
 from raycheck.errors import UsageError
 from raycheck.laws import LawPlan, all_laws, check_names, chosen
 from raycheck.laws.plan import AnyLaw
+from raycheck.shrink import NO_SHRINKING, ShrinkPlan
 from raycheck.subjects import Subject, jailed
 from raycheck.workspace import workspace
 from scenes.catalogue import ladder
@@ -50,6 +51,7 @@ def _checked(options: Namespace, subject: Subject) -> int:
             known=known_failures,
             repeat=repeat_line(options, session.ONE_LAW),
         ),
+        shrink=NO_SHRINKING if options.no_shrink else ShrinkPlan(repeat_line(options, size="")),
     )
     found, code = session.check(order)
     session.tell(found, order.out)
@@ -72,8 +74,9 @@ def _laws(names: list[str] | None, scenes: str | None) -> Sequence[AnyLaw]:
     return all_laws() if scenes is None else ()
 
 
-def repeat_line(options: Namespace, asked: str = session.ONE_SCENE) -> str:
-    """The call that asks one scene or one law again; its name is filled in later."""
+def repeat_line(options: Namespace, asked: str = session.ONE_SCENE, size: str | None = None) -> str:
+    """The call that asks one scene or one law again, at the same or another size; its name is filled in later."""
+    size = options.size if size is None else size
     words = ["check"]
     if options.subject is not None:
         words.append(options.subject)
@@ -82,8 +85,8 @@ def repeat_line(options: Namespace, asked: str = session.ONE_SCENE) -> str:
             words += [f"--{name}", getattr(options, name)]
     for word in options.dialect or ():
         words += ["--dialect", word]
-    if options.size:
-        words += ["--size", options.size]
+    if size:
+        words += ["--size", size]
     if options.seed:
         words += ["--seed", str(options.seed)]
     if options.known:

@@ -12,6 +12,7 @@ from raycheck.errors import BROKEN, CONFORMS, DIFFERS
 from raycheck.examples import examples
 from raycheck.known import Known
 from raycheck.laws import LawPlan, all_laws
+from raycheck.shrink import ShrinkPlan
 from raycheck.subjects import attach
 
 EXAMPLES = (("cpp_lecture", CONFORMS), ("cpp_slides", DIFFERS))
@@ -37,6 +38,7 @@ def run(options: Namespace) -> int:
             laws=LawPlan(
                 all_laws(), block=False, repeat=session.repeat_line(["check", str(folder)], [], session.ONE_LAW)
             ),
+            shrink=ShrinkPlan(session.repeat_line(["check", str(folder)], [])),
         )
         found, code = session.check(order)
         session.tell(found, order.out)

@@ -30,7 +30,7 @@ def run(options: Namespace) -> int:
 def _make(options: Namespace, folder: Path) -> int:
     if not 1 <= options.jobs <= 64:
         raise UsageError(f"--jobs {options.jobs}: out of range", "1 to 64")
-    size = size_of(options.size)
+    size = size_of(options.size, options.jobs)
     rungs = session.chosen(options.scenes.split(",") if options.scenes else None)
     scenes = [rung.scene().resized(*size) if size else rung.scene() for rung in rungs]
     session.make_folder(folder)

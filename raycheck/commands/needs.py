@@ -15,7 +15,7 @@ from oracles.chart.timing import Work, interleaved
 from oracles.measurement import Precision
 from oracles.needs import METHODS, Change, Needs, Trial, changed, needs, trials
 from oracles.truth import truth
-from raycheck.commands.options import scene_of, size_of
+from raycheck.commands.options import picture_of
 from raycheck.errors import CONFORMS
 from raycheck.lanes import best_lanes
 from raycheck.progress import Progress
@@ -36,9 +36,7 @@ DEEPEST = 16
 
 def run(options: Namespace) -> int:
     """Judge, time, tell."""
-    scene = scene_of(options.scene)
-    size = size_of(options.size)
-    scene = scene.resized(*size) if size else scene
+    scene = picture_of(options.scene, options.size)
     progress = Progress(f"reducing {scene.name}", 1)
     try:
         found, lines = _measured(scene, progress)

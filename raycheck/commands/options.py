@@ -8,6 +8,8 @@ from argparse import Namespace
 from pathlib import Path
 
 from raycheck.errors import UsageError
+from raycheck.filed import is_file
+from raycheck.memory import check_fits
 from raycheck.subjects import Subject, attach, attach_command, dialect_of
 from scenes.catalogue import rung
 from scenes.files import load
@@ -62,8 +64,8 @@ def command_line(options: Namespace) -> str:
     return shlex.join(["raycheck", *options.words, *tail])
 
 
-def size_of(text: str | None) -> tuple[int, int] | None:
-    """(width, height) of WxH."""
+def size_of(text: str | None, at_once: int = 1) -> tuple[int, int] | None:
+    """(width, height) of WxH; so many pictures of this size must fit into memory together."""
     if text is None:
         return None
     found = re.fullmatch(r"(\d{1,5})x(\d{1,5})", text)
@@ -72,11 +74,19 @@ def size_of(text: str | None) -> tuple[int, int] | None:
     width, height = int(found[1]), int(found[2])
     if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE):
         raise UsageError(f"--size {text}: out of range", f"sides from 1 to {MAX_SIDE}")
+    check_fits(width, height, f"--size {text}", at_once)
     return width, height
+
+
+def picture_of(name: str, size: str | None) -> Scene:
+    """A scene to be rendered, by file or by name, in the size that is asked for or its own."""
+    scene, asked = scene_of(name), size_of(size)
+    if asked:
+        return scene.resized(*asked)
+    check_fits(scene.image.width, scene.image.height, name)
+    return scene
 
 
 def scene_of(name: str) -> Scene:
     """A scene by file, or by name in the catalogue."""
-    if name.endswith((".json", ".txt")) or "/" in name:
-        return load(Path(name))
-    return rung(name).scene()
+    return load(Path(name)) if is_file(name) else rung(name).scene()

@@ -11,7 +11,7 @@ from oracles.peers.arbitration import arbitrate
 from oracles.verdict import SceneStandings
 from raycheck import VERSION, session
 from raycheck.commands.options import command_line, size_of
-from raycheck.errors import CONFORMS, DIFFERS, UsageError
+from raycheck.errors import CONFORMS, DIFFERS
 from raycheck.lanes import best_lanes
 from raycheck.machine import machine
 from raycheck.peers.parties import peers
@@ -43,13 +43,7 @@ def run(options: Namespace) -> int:
         seconds=time.monotonic() - begin,
         cases=tuple(cases),
     )
-    try:
-        page.write(found, out)
-    except OSError as error:
-        raise UsageError(f"the report cannot be written: {error}", session.WRITABLE) from None
-    for line in page.lines(found):
-        print(line)
-    print(f"report: {out / page.FILE}")
+    session.deliver(lambda: page.write(found, out), page.lines(found), out / page.FILE)
     return DIFFERS if any(map(_open, cases)) else CONFORMS
 
 

@@ -13,7 +13,7 @@ from oracles.faults import FAULTS, TWINS, Fault, Twin
 from oracles.faults.power import Bench, Kill, kills
 from raycheck import VERSION, session
 from raycheck.commands.options import command_line, size_of
-from raycheck.errors import CONFORMS, DIFFERS, UsageError
+from raycheck.errors import CONFORMS, DIFFERS
 from raycheck.lanes import best_lanes
 from raycheck.machine import machine
 from raycheck.progress import Progress
@@ -49,13 +49,7 @@ def run(options: Namespace) -> int:
         faults=faults,
         twins=twins,
     )
-    try:
-        page.write(found, out)
-    except OSError as error:
-        raise UsageError(f"the report cannot be written: {error}", session.WRITABLE) from None
-    for line in page.lines(found):
-        print(line)
-    print(f"report: {out / page.FILE}")
+    session.deliver(lambda: page.write(found, out), page.lines(found), out / page.FILE)
     return CONFORMS if found.holds else DIFFERS
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from oracles.images import ENDINGS, ImageError, write
-from raycheck.commands.options import scene_of, size_of
+from raycheck.commands.options import picture_of
 from raycheck.errors import CONFORMS, UsageError
 from raycheck.lanes import best_lanes
 from raycheck.progress import Progress
@@ -42,9 +42,7 @@ def run(options: Namespace) -> int:
 
 
 def _scene(options: Namespace) -> Scene:
-    scene = scene_of(options.scene)
-    size = size_of(options.size)
-    scene = scene.resized(*size) if size else scene
+    scene = picture_of(options.scene, options.size)
     if options.depth is None:
         return scene
     if not 0 <= options.depth <= 16:

@@ -23,8 +23,8 @@ from raycheck.probes.wire import LINE_LIMIT, shown
 FILES = 2**24
 """Bytes of a file that a probe may write: it has no reason to write any."""
 CHUNK = 2**18
-GRACE = 1.0
-"""Seconds that a process which closed its output has to end, so that its end can be told."""
+GRACE = 5.0
+"""Seconds that a process which closed its output has to end, so that its end can be told also on a busy machine."""
 
 SPENT = "its answers took longer than all of them together may"
 

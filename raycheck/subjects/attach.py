@@ -39,6 +39,8 @@ def attach(spec: str, precision: str = "float32", dialect: Dialect = SCENE_MODEL
             return FaultSubject(rest)
         case "builtin":
             raise UsageError(f"{spec}: no such tracer is built in", "builtin:reference, mitsuba, povray or fault/NAME")
+        case "images" if not rest:
+            raise UsageError(f"{spec}: no such folder", "images:DIR, images:. for the one you are in")
         case "images":
             return ImagesSubject(Path(rest), precision, dialect)
         case "python" if rest.count(":") == 1:

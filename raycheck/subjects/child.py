@@ -22,6 +22,8 @@ from raycheck.errors import StartError
 FILE_LIMIT = 2**30
 """Bytes of any file that the process writes: pictures, and what it prints."""
 REPLY_LIMIT = 2**16
+GRACE = 5.0
+"""Seconds for a process that closed its output to be gone: a large one on a busy machine, with a core to write."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ class Child:
     def _ended(self, running: subprocess.Popen[bytes], late: bool, seconds: float) -> process.Ended:
         if not late:
             try:
-                running.wait(timeout=process.GRACE)
+                running.wait(timeout=GRACE)
             except subprocess.TimeoutExpired:
                 late = True
         code = running.returncode

@@ -20,10 +20,10 @@ class ImagesSubject:
     spp: int | None = None
 
     def __init__(self, folder: Path, precision: str, dialect: Dialect) -> None:
-        if not folder.name or not folder.is_dir():
+        if not folder.is_dir():
             raise UsageError(f"images:{folder}: no such folder", "a folder with one image a scene, named by the scene")
         self.folder = folder
-        self.name = f"images in {folder.name}"
+        self.name = f"images in {folder.resolve().name or folder}"
         self.spec = f"images:{folder}"
         self.precision = precision
         self.dialect = dialect

@@ -44,6 +44,11 @@ class Rung:
         text = resources.files("scenes.catalogue").joinpath(f"{self.name}.json").read_text("utf-8")
         return from_json(text, f"catalogue/{self.name}.json")
 
+    @property
+    def asked(self) -> str:
+        """What the command line calls it."""
+        return self.name
+
 
 def _needs(table: dict[str, Any]) -> Needs:
     return Needs(frozenset(table["features"]), table["depth"], table.get("beyond", ""))

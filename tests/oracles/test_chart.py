@@ -1,11 +1,9 @@
 """The chart's measurements: times side by side, errors against truth, a frontier of right points."""
 
-import time
-
 import numpy as np
 import pytest
 
-from oracles.chart import arithmetics, depth, panels, pareto
+from oracles.chart import arithmetics, depth, panels, pareto, timing
 from oracles.chart.timing import Work, interleaved, summed
 from oracles.measurement import Point
 from oracles.stability import strata, truth
@@ -64,16 +62,34 @@ def test_rounds_are_interleaved_after_one_to_warm_up():
     assert order == ["a", "b"] * 3
 
 
-def test_times_are_for_a_unit_of_work():
-    found = interleaved({"a": Work(lambda: time.sleep(0.01), 10)}, 2)["a"]
-    assert 0.001 <= found.least <= found.quartiles[2]
+@pytest.fixture
+def takes(monkeypatch):
+    """Work that takes so many seconds by a clock that only work moves."""
+    clock = [0.0]
+    monkeypatch.setattr(timing.time, "perf_counter", lambda: clock[0])
+
+    def work(seconds, units=1):
+        calls = []
+
+        def run():
+            calls.append(seconds)
+            clock[0] += seconds
+
+        return Work(run, units), calls
+
+    return work
 
 
-def test_a_slow_one_sits_out_the_rest():
-    calls = []
-    works = {"slow": Work(lambda: (calls.append(1), time.sleep(0.02)), 1), "fast": Work(lambda: None, 1)}
-    found = interleaved(works, 10, patience=0.03)
+def test_times_are_for_a_unit_of_work(takes):
+    found = interleaved({"a": takes(0.5, units=8)[0]}, 2)["a"]
+    assert (found.least, found.quartiles) == (0.0625, (0.0625, 0.0625, 0.0625))
+
+
+def test_a_slow_one_sits_out_the_rest(takes):
+    (slow, calls), (fast, others) = takes(2.0), takes(0.25)
+    found = interleaved({"slow": slow, "fast": fast}, 10, patience=3.0)
     assert len(calls) == 3  # the warm-up and two
+    assert len(others) == 11
     assert set(found) == {"slow", "fast"}
 
 

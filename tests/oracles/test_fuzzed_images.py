@@ -42,7 +42,7 @@ STARTS = {
     "exr": b"\x76\x2f\x31\x01\x02\x00\x00\x00",
     "png": b"\x89PNG\r\n\x1a\n",
 }
-FUZZ = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=200)
+FUZZ = settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=200)
 
 
 @pytest.mark.parametrize("ending", ENDINGS)

@@ -8,7 +8,6 @@ import socket
 import struct
 import subprocess
 import sys
-import time
 import tracemalloc
 import zlib
 from pathlib import Path
@@ -84,9 +83,7 @@ def test_a_file_too_large_for_its_size_is_refused_unread(tmp_path: Path, ending:
 def test_a_fifo_is_refused_without_waiting_for_a_writer(tmp_path: Path, ending: str) -> None:
     path = tmp_path / f"hostile.{ending}"
     os.mkfifo(path)
-    begin = time.monotonic()
-    assert refusal(path) == "the image is not a regular file"
-    assert time.monotonic() - begin < 5.0
+    assert refusal(path) == "the image is not a regular file"  # who waited would wait for ever
 
 
 @pytest.mark.parametrize("target", ["good", "nowhere", "/dev/zero", "hostile"])

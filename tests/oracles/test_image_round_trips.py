@@ -181,7 +181,7 @@ singles = hnp.arrays(np.float32, SHAPE, elements=st.floats(width=32, allow_nan=F
 
 @pytest.mark.parametrize("ending", ["pfm", "exr", "npy"])
 @given(values=singles)
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=50)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=50)
 def test_any_float32_picture_comes_back_bit_for_bit(tmp_path: Path, ending: str, values: NDArray[Any]) -> None:
     path = tmp_path / f"a.{ending}"
     write(path, values, "lecture")
@@ -189,7 +189,7 @@ def test_any_float32_picture_comes_back_bit_for_bit(tmp_path: Path, ending: str,
 
 
 @given(values=hnp.arrays(np.float64, SHAPE, elements=st.floats(allow_nan=False, allow_infinity=False)))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=50)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=50)
 def test_any_float64_picture_comes_back_from_npy_bit_for_bit(tmp_path: Path, values: NDArray[Any]) -> None:
     path = tmp_path / "a.npy"
     write(path, values, "lecture")

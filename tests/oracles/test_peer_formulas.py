@@ -23,7 +23,8 @@ def judged(stratum: Stratum, kind: type, wrong: float = 0.0) -> Errors:
 
 @pytest.mark.parametrize("stratum", CASES, ids=NAMES)
 def test_our_float64_formulas_lie_far_inside_the_float32_budget(stratum: Stratum) -> None:
-    assert judged(stratum, np.float64).share < 1e-5
+    # 2^-29 between the roundoffs; the lecture's sphere formula loses up to D = 1000 times more than a stable one
+    assert judged(stratum, np.float64).share < 2.0**-29 * 1000.0
 
 
 @pytest.mark.parametrize("stratum", [s for s in CASES if s.formula != "sphere"], ids=lambda s: f"{s.formula}, {s.name}")

@@ -7,10 +7,12 @@ import pytest
 from numpy.random import default_rng
 
 from oracles.statistics import Samples, area_average, judge
+from oracles.statistics.reference import GRID
 from oracles.statistics.student import critical, sidak, two_sided, welch
 from oracles.truth import truth
 from scenes.catalogue import rung
 
+U = 2.0**-53
 SCENE = rung("point-light").scene().resized(24, 16)
 TRUTH = truth(SCENE, "float32")
 RUNS, UNITS, SPP, SIGMA = 16, 32, 64, 0.02
@@ -27,30 +29,40 @@ def reference(seed: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("t", "freedom", "p"),
+    ("t", "decimals", "freedom", "p"),
     # Student's table: quantiles of 1, 10 and 30 degrees of freedom
-    [(12.7062, 1, 0.05), (2.22814, 10, 0.05), (3.16927, 10, 0.01), (2.04227, 30, 0.05), (3.6460, 30, 0.001)],
+    [
+        (12.7062, 4, 1, 0.05),
+        (2.22814, 5, 10, 0.05),
+        (3.16927, 5, 10, 0.01),
+        (2.04227, 5, 30, 0.05),
+        (3.6460, 4, 30, 0.001),
+    ],
 )
-def test_tails_are_students(t: float, freedom: float, p: float) -> None:
-    assert two_sided(t, freedom) == pytest.approx(p, rel=2e-4)
-    assert critical(p, freedom) == pytest.approx(t, rel=1e-4)
+def test_tails_are_students(t: float, decimals: int, freedom: float, p: float) -> None:
+    half = 0.5 * 10.0**-decimals  # of the last digit
+    assert two_sided(t + half, freedom) < p < two_sided(t - half, freedom)
+    assert critical(p, freedom) == pytest.approx(t, abs=half)
 
 
 def test_a_cauchy_tail_is_known_in_closed_form() -> None:
     """One degree of freedom: P(|T| >= t) = 1 - 2 atan(t)/π."""
-    assert two_sided(1e6, 1.0) == pytest.approx(2.0 / np.pi * 1e-6, rel=1e-9)
+    # 1 - 2 atan(t)/π = 2 atan(1/t)/π; arb at 53 bits and two quotients
+    assert two_sided(1e6, 1.0) == pytest.approx(2.0 / np.pi * np.arctan(1e-6), rel=16 * U, abs=0.0)
 
 
 def test_sidak_restores_the_rate() -> None:
-    assert 1.0 - (1.0 - sidak(0.01, 900)) ** 900 == pytest.approx(0.01)
+    assert 1.0 - (1.0 - sidak(0.01, 900)) ** 900 == pytest.approx(
+        0.01, abs=900 * 2 * U
+    )  # the rounding of the rate and of its complement, in 900 factors
 
 
 def test_welch_has_students_freedom_for_equal_variances_and_counts() -> None:
     a = np.array([[1.0], [2.0], [3.0], [4.0]])
     found = welch(a, a + 1.0)
-    assert found.freedom[0] == pytest.approx(6.0)
+    assert found.freedom[0] == pytest.approx(6.0, rel=16 * U, abs=0.0)  # a dozen operations
     assert found.difference[0] == -1.0
-    assert found.error[0] == pytest.approx(np.sqrt(2 * (5.0 / 3.0) / 4))
+    assert found.error[0] == pytest.approx(np.sqrt(2 * (5.0 / 3.0) / 4), rel=16 * U, abs=0.0)
 
 
 def test_a_right_tracer_fails_no_more_often_than_stated() -> None:
@@ -104,7 +116,9 @@ def test_the_reference_averages_over_the_pixels_area() -> None:
     scene = rung("background").scene().resized(8, 6)
     found = area_average(scene, 2, 5, "numpy")
     assert found.shape == (2, 6, 8, 3)
-    assert found == pytest.approx(np.broadcast_to(np.array(scene.background), found.shape))
+    assert found == pytest.approx(
+        np.broadcast_to(np.array(scene.background), found.shape), abs=GRID**2 * U
+    )  # a rounding each sample
 
 
 def test_units_of_the_reference_are_reproducible_and_independent() -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import re
-import socket
 import stat
 import subprocess
 import sys
+import time
 import tomllib
 import zipfile
 from collections.abc import Callable
@@ -275,25 +275,30 @@ def test_a_cluster_gives_the_same_grades_and_survives_a_lost_worker(
     pytest.importorskip("distributed", reason="dask.distributed is needed: pip install 'raycheck[cluster]'")
     for k in range(6):
         subprocess.run(["cp", "-R", str(team / "alice"), str(team / f"student-{k}")], check=True)
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    meeting = tmp_path / "scheduler.json"  # the scheduler picks its port and tells it there
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     quiet: dict[str, Any] = {"env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     python = [sys.executable, "-P", "-m"]
+    common = ["--no-dashboard", "--scheduler-file", str(meeting)]
     started = [
-        subprocess.Popen([*python, "distributed.cli.dask_scheduler", "--host", address, "--no-dashboard"], **quiet)
+        subprocess.Popen(
+            [*python, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *common], **quiet
+        )
     ]
-    worker = ["--nthreads", "2", "--no-dashboard", "--no-nanny", "--local-directory", str(tmp_path / "workers")]
-    started += [subprocess.Popen([*python, "distributed.cli.dask_worker", address, *worker], **quiet) for _ in range(2)]
+    worker = ["--nthreads", "2", "--no-nanny", "--local-directory", str(tmp_path / "workers"), *common]
+    started += [subprocess.Popen([*python, "distributed.cli.dask_worker", *worker], **quiet) for _ in range(2)]
     try:
         words = ["grade", str(team), "--rubric", str(tmp_path / "one.toml"), "--seed", "4"]
         call = [sys.executable, "-P", "-c", "from raycheck.cli import entry; entry()", *words]
+        while not meeting.exists():
+            assert started[0].poll() is None
+            time.sleep(0.02)
+        address = json.loads(meeting.read_text("utf-8"))["address"]
         run = subprocess.Popen([*call, "--out", str(tmp_path / "far"), "--cluster", address], **quiet)
         while run.poll() is None and not list((tmp_path / "far").glob("records/*.json")):
-            pass
+            time.sleep(0.005)
         started[1].kill()
-        assert run.wait(timeout=120) == 0
+        assert run.wait(timeout=500) == 0
     finally:
         for process in started:
             process.kill()

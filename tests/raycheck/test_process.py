@@ -17,7 +17,7 @@ from raycheck.process import Ended, clean, run
 FILES = 2**20
 
 
-def python(body: str, cwd: Path, timeout: float = 20.0, file_limit: int = FILES) -> Ended:
+def python(body: str, cwd: Path, timeout: float = 300.0, file_limit: int = FILES) -> Ended:
     return run([sys.executable, "-S", "-c", body], cwd, timeout, file_limit)
 
 
@@ -44,7 +44,7 @@ def zombies_of_ours() -> list[str]:
 
 def soon(gone: int) -> bool:
     """A killed process may still be on its way out."""
-    for _ in range(200):
+    for _ in range(6000):
         if not alive(gone):
             return True
         time.sleep(0.01)
@@ -78,25 +78,25 @@ def test_a_time_out_ends_the_program_and_its_children(tmp_path: Path) -> None:
 import os, time
 child = os.fork()
 if child: print(os.getpid(), child, flush=True)
-time.sleep(60)
+time.sleep(600)
 """
-    ended = python(body, tmp_path, timeout=1.0)
+    ended = python(body, tmp_path, timeout=3.0)
     assert (ended.how, ended.status) == ("timeout", "stopped: out of time")
-    assert ended.seconds < 10.0
+    assert ended.seconds < 60.0
     pids = [int(word) for word in ended.tail.split()]
     assert len(pids) == 2
     assert all(soon(pid) for pid in pids)
 
 
 def test_a_program_that_ignores_sigterm_is_ended_all_the_same(tmp_path: Path) -> None:
-    body = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print('on', flush=True); time.sleep(60)"
-    assert python(body, tmp_path, timeout=1.0).how == "timeout"
+    body = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"
+    assert python(body, tmp_path, timeout=3.0).how == "timeout"
 
 
 def test_a_program_that_closes_its_output_and_sleeps_is_out_of_time(tmp_path: Path) -> None:
-    ended = python("import os, time; os.close(1); os.close(2); time.sleep(60)", tmp_path, timeout=0.5)
+    ended = python("import os, time; os.close(1); os.close(2); time.sleep(600)", tmp_path, timeout=3.0)
     assert ended.how == "timeout"
-    assert ended.seconds < 10.0
+    assert ended.seconds < 60.0
 
 
 def test_a_child_that_keeps_the_pipe_open_does_not_hold_us_up_and_is_ended(tmp_path: Path) -> None:
@@ -104,13 +104,13 @@ def test_a_child_that_keeps_the_pipe_open_does_not_hold_us_up_and_is_ended(tmp_p
 import os, time
 child = os.fork()
 if child == 0:
-    time.sleep(60)
+    time.sleep(600)
 print(child, flush=True)
 os._exit(5)
 """
-    ended = python(body, tmp_path, timeout=30.0)
+    ended = python(body, tmp_path)
     assert (ended.how, ended.code) == ("exited", 5)
-    assert ended.seconds < 15.0
+    assert ended.seconds < 60.0
     assert soon(int(ended.tail))
 
 
@@ -122,9 +122,9 @@ if os.fork():
 while True:
     os.write(1, b"x")
 """
-    ended = python(body, tmp_path, timeout=30.0)
+    ended = python(body, tmp_path)
     assert ended.how in ("exited", "flood")
-    assert ended.seconds < 15.0
+    assert ended.seconds < 60.0
 
 
 @pytest.mark.parametrize("stream", [1, 2])

@@ -50,6 +50,14 @@ def test_right_pictures_in_any_format_pass_and_a_missing_one_is_invalid(check: C
     assert [v.process for v in found.verdicts] == [None] * 4
 
 
+def test_the_folder_one_stands_in_is_a_subject(check: Check, pictures: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(pictures)
+    found = check("images:.", "--size", "40x30", "--scenes", "background")
+    assert [v.verdict for v in found.verdicts] == ["pass"]
+    assert found.subject.name == "images in pictures"
+    assert found.subject.spec == "images:."
+
+
 def test_a_picture_of_another_scene_fails(check: Check, pictures: Path) -> None:
     (pictures / "headlight-sphere.exr").rename(pictures / "depth-order.exr")
     found = check(f"images:{pictures}", "--size", "40x30", "--scenes", "depth-order")

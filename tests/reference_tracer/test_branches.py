@@ -68,7 +68,7 @@ def looked_at(scene, offset=0.0, rules=LECTURE):
 
 def holds(bounds, colour):
     low, high, _ = bounds
-    return bool((low <= np.array(colour) + 1e-6).all() and (np.array(colour) <= high + 1e-6).all())
+    return bool((low <= np.array(colour)).all() and (np.array(colour) <= high).all())
 
 
 NEAR = 4e-7

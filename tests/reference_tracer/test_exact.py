@@ -119,7 +119,9 @@ def test_a_tie_that_no_precision_resolves_is_the_hull_of_both_branches():
         assert pixel.value == (1.0, 0.0, 0.0)
     else:
         assert pixel.value == (0.5, 0.5, 0.0)
-        assert pixel.bound == pytest.approx((0.5, 0.5, 0.0))
+        assert pixel.bound[2] == 0.0
+        # arb's radii have 30 bits and are rounded up, here twice
+        assert all(0.5 <= bound <= 0.5 * (1 + 2.0**-27) for bound in pixel.bound[:2])
 
 
 def test_undecided_comparisons_stop_the_pixel():

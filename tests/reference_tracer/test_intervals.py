@@ -202,7 +202,7 @@ def test_exact_pixels_overlap_those_of_another_tracer(name):
             continue
         told += 1
         assert apart(pixel, channels) == []
-        assert all(channel.delta < 1e-20 for channel in channels)
+        assert all(channel.delta < 2.0**-64 for channel in channels)  # narrow beside a float64's 2^-53
     assert told >= 7
 
 

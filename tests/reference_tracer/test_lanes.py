@@ -133,25 +133,25 @@ scenes = st.fixed_dictionaries(
 
 
 @given(scene=scenes)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_any_scene_has_the_same_bits_plain_and_on_numpy(scene):
     assert (bits(plain.render(scene)) == bits(lanes.render(scene, lanes.backend("numpy", 64)))).all()
 
 
 @needs_llvm
 @given(scene=scenes)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_any_scene_has_the_same_bits_on_numpy_and_drjit(scene):
     numpy, drjit = (lanes.render(scene, lanes.backend(kind, 64)) for kind in ("numpy", "drjit"))
     assert (bits(numpy) == bits(drjit)).all()
 
 
 @given(scene=scenes)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_in_any_scene_float32_lies_inside_the_balls_of_its_roundoff(scene):
     got = lanes.render(scene, lanes.backend("numpy", 32)).pixels.astype(np.float64)
     found = lanes.enclose(scene, lanes.backend("numpy", 64), 2.0**-24, 0.0)
-    assert (np.abs(got - found.pixels) <= found.radius * (1 + 1e-9)).all()
+    assert (np.abs(got - found.pixels) <= found.radius * (1 + 2.0**-50)).all()  # the difference is rounded here
 
 
 def test_ties_are_decided_the_same_way_whatever_the_order_of_objects():

@@ -12,8 +12,9 @@ import pytest
 
 from oracles.measurement import Answer, Axis, Case, Depth, Experiment, Frontier, Map, Question, Start
 from reports import measured, stability
-from reports.results import Machine, ResultsError
+from reports.results import Machine
 from reports.stability import Stability
+from reports.stored import ResultsError
 
 EVIL = "<script>alert(1)</script>\u202egnp\x1b[31m"
 

@@ -7,7 +7,7 @@ import struct
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from scenes.catalogue import ladder
@@ -136,7 +136,6 @@ def content(scene: Scene) -> Any:
 
 
 @given(scenes())
-@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None)
 def test_every_scene_survives_json_to_text_to_json_bit_for_bit(scene: Scene) -> None:
     through_json = from_json(to_json(scene))
     through_text = from_text(to_text(through_json))
@@ -144,7 +143,6 @@ def test_every_scene_survives_json_to_text_to_json_bit_for_bit(scene: Scene) -> 
 
 
 @given(scenes())
-@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None)
 def test_every_statement_of_the_text_form_has_the_words_of_the_contract(scene: Scene) -> None:
     sizes = {"image": 5, "eye": 4, "forward": 4, "right": 4, "up": 4, "background": 4, "depth": 2, "shadows": 2}
     sizes |= {"raycheck": 3, "fresnel": 2, "display": 2, "material": 19, "sphere": 6, "plane": 6, "point": 8}

@@ -54,7 +54,7 @@ def test_a_law_can_tell_in_a_good_part_of_its_cases(law: Law, precision: str) ->
 
 
 @pytest.mark.parametrize("law", LAWS, ids=name_of)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(columns=st.lists(st.integers(0, 64).map(lambda k: k / 64.0), max_size=24))
 def test_our_tracer_obeys_the_law_one_case_at_a_time(law: Law, columns: list[float]) -> None:
     dice = repeated(np.array([columns]).reshape(1, len(columns)), "float64")

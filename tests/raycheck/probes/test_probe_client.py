@@ -38,7 +38,7 @@ def probe(tmp_path: Path) -> Iterator[Opened]:
     """A client of a Python probe with this body."""
     made: list[ProbeClient] = []
 
-    def start(body: str, head: str = GREET, precision: str = "float32", patience: float = 5.0) -> ProbeClient:
+    def start(body: str, head: str = GREET, precision: str = "float32", patience: float = 60.0) -> ProbeClient:
         path = tmp_path / "probe.py"
         path.write_text(head + body, "utf-8")
         made.append(ProbeClient((sys.executable, "-S", str(path)), tmp_path, "team", precision, patience))
@@ -127,7 +127,7 @@ def test_a_line_without_end_is_cut_off(probe: Opened) -> None:
     client = probe("for words in lines():\n    while True: sys.stdout.write('9' * 65536); sys.stdout.flush()\n")
     begin = time.monotonic()
     assert "a line of more than 4096 bytes" in failure(client).message
-    assert time.monotonic() - begin < 4.0
+    assert time.monotonic() - begin < client.patience
 
 
 def test_more_lines_than_questions_are_invalid(probe: Opened) -> None:
@@ -144,19 +144,19 @@ def test_more_lines_than_questions_are_invalid(probe: Opened) -> None:
 
 def test_silence_is_a_timeout_that_names_the_question(probe: Opened) -> None:
     body = "for words in lines():\n    if words[1] == '11': time.sleep(60)\n    say('1')\n"
-    error = failure(probe(body, patience=0.3), count=3)
+    error = failure(probe(body, patience=2.0), count=3)
     assert (error.word, error.arguments[0]) == ("timeout", 11.0)
-    assert "within 0.3 s" in error.message
+    assert "within 2 s" in error.message
 
 
 def test_a_probe_that_does_not_flush_is_told_to(probe: Opened) -> None:
-    error = failure(probe("for words in lines(): sys.stdout.write('1\\n')\n", patience=0.3))
+    error = failure(probe("for words in lines(): sys.stdout.write('1\\n')\n", patience=2.0))
     assert error.word == "timeout"
     assert "flushed" in error.message
 
 
 def test_slow_but_steady_answers_are_in_time(probe: Opened) -> None:
-    client = probe("for words in lines():\n    time.sleep(0.1); say('1')\n", patience=0.6)
+    client = probe("for words in lines():\n    time.sleep(0.3); say('1')\n", patience=2.0)
     assert len(client("sphere", sphere(10))) == 10
 
 
@@ -175,7 +175,7 @@ def test_an_exit_tells_status_and_last_words(probe: Opened) -> None:
 
 
 def test_a_probe_that_closes_its_output_is_invalid(probe: Opened) -> None:
-    assert failure(probe("for words in lines():\n    os.close(1); time.sleep(30)\n")).word == "invalid"
+    assert failure(probe("for words in lines():\n    os.close(1); time.sleep(600)\n")).word == "invalid"
 
 
 def test_a_flood_on_stderr_blocks_nothing(probe: Opened) -> None:
@@ -248,11 +248,11 @@ def test_a_scene_that_is_not_taken_is_told(probe: Opened) -> None:
 
 def test_nothing_is_left_running_after_close(probe: Opened) -> None:
     client = probe(
-        "import subprocess\nchild = subprocess.Popen(['sleep', '60'])\nfor words in lines(): say(str(child.pid))\n"
+        "import subprocess\nchild = subprocess.Popen(['sleep', '600'])\nfor words in lines(): say(str(child.pid))\n"
     )
     child = int(client("sphere", sphere())[0, 0])
     client.close()
-    deadline = time.monotonic() + 2.0
+    deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline and _runs(child):
         time.sleep(0.02)
     assert not _runs(child)

@@ -1,0 +1,55 @@
+"""What a hearing's pictures and answers come to: the diagnosis, with the picture and the line that show it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from oracles.diagnosis import Answers, diagnose, predicted
+from oracles.faults import fault
+from oracles.images.writing import png_bytes
+from oracles.verdict import Diagnosis, Verdict
+from raycheck.suite import Hearing
+from reference_tracer.formulas.display import encode
+
+PICTURE = "images/diagnosis.png"
+LAW, OF_PICTURES = "law/", "law/image/"
+
+
+def diagnosed(
+    hearing: Hearing, verdicts: Sequence[Verdict], folder: Path, told: Callable[[str], Any] = lambda words: None
+) -> Diagnosis | None:
+    """The diagnosis of a subject that does not conform; None where nothing fails but what is known to."""
+    failing = [v for v in verdicts if v.verdict == "fail"]
+    if not failing:
+        return None
+    known = {v.check for v in verdicts if v.verdict == "known"}
+    exhibits = [exhibit for name, exhibit in hearing.exhibits.items() if f"image/{name}" not in known]
+    told("looking for what explains the wrong pictures")
+    base = hearing.convention.rules()
+    found = diagnose(exhibits, base, answers(verdicts), told)
+    if found is None:
+        return None
+    repeat = next((v.reproduce for v in verdicts if v.check == found.check), "")
+    picture = None
+    if found.faults and found.check:
+        exhibit = hearing.exhibits[found.check.removeprefix("image/")]
+        pixels = predicted(exhibit, [fault(suspect.name) for suspect in found.faults], base)
+        (folder / PICTURE).write_bytes(png_bytes(encode(pixels, exhibit.scene.display)))
+        picture = PICTURE
+    return found.model_copy(update={"reproduce": repeat, "picture": picture})
+
+
+def answers(verdicts: Sequence[Verdict]) -> Answers:
+    """Which operations of the probe keep all their laws, and which laws the others break."""
+    asked = [v for v in verdicts if v.check.startswith(LAW) and not v.check.startswith(OF_PICTURES)]
+    broken: dict[str, tuple[str, ...]] = {}
+    kept: set[str] = set()
+    for verdict in asked:
+        operation = verdict.check.split("/")[1]
+        if verdict.verdict == "fail":
+            broken[operation] = (*broken.get(operation, ()), verdict.check)
+        elif verdict.verdict == "pass":
+            kept.add(operation)
+    return Answers(broken, frozenset(kept) - set(broken))
