@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from oracles.conventions import Convention
 from oracles.diagnosis import Answers, diagnose, predicted
 from oracles.faults import fault
 from oracles.images.writing import png_bytes
+from oracles.inference import Exhibit
 from oracles.verdict import Diagnosis, Verdict
 from raycheck.suite import Hearing
 from reference_tracer.formulas.display import encode
@@ -21,20 +23,30 @@ def diagnosed(
     hearing: Hearing, verdicts: Sequence[Verdict], folder: Path, told: Callable[[str], Any] = lambda words: None
 ) -> Diagnosis | None:
     """The diagnosis of a subject that does not conform; None where nothing fails but what is known to."""
-    failing = [v for v in verdicts if v.verdict == "fail"]
-    if not failing:
+    return explained(hearing.exhibits, hearing.convention, verdicts, folder, told)
+
+
+def explained(
+    exhibits: Mapping[str, Exhibit],
+    convention: Convention,
+    verdicts: Sequence[Verdict],
+    folder: Path,
+    told: Callable[[str], Any] = lambda words: None,
+) -> Diagnosis | None:
+    """What explains the failures among these verdicts; the pictures by scene, where what the faults make is written."""
+    if not any(verdict.verdict == "fail" for verdict in verdicts):
         return None
     known = {v.check for v in verdicts if v.verdict == "known"}
-    exhibits = [exhibit for name, exhibit in hearing.exhibits.items() if f"image/{name}" not in known]
+    wanted = [exhibit for name, exhibit in exhibits.items() if f"image/{name}" not in known]
     told("looking for what explains the wrong pictures")
-    base = hearing.convention.rules()
-    found = diagnose(exhibits, base, answers(verdicts), told)
+    base = convention.rules()
+    found = diagnose(wanted, base, answers(verdicts), told)
     if found is None:
         return None
     repeat = next((v.reproduce for v in verdicts if v.check == found.check), "")
     picture = None
     if found.faults and found.check:
-        exhibit = hearing.exhibits[found.check.removeprefix("image/")]
+        exhibit = exhibits[found.check.removeprefix("image/")]
         pixels = predicted(exhibit, [fault(suspect.name) for suspect in found.faults], base)
         (folder / PICTURE).write_bytes(png_bytes(encode(pixels, exhibit.scene.display)))
         picture = PICTURE

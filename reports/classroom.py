@@ -182,11 +182,13 @@ def rates(classroom: Classroom) -> list[Rate]:
     counted: dict[str, Counter[str]] = {}
     for graded in classroom.graded:
         for group in graded.record.groups:
-            for line in group.lines:
+            for line in () if group.charges else group.lines:
                 # Hidden scenes have names that mean nothing to a class
                 name = group.name if line.check.startswith(HIDDEN) else line.check
                 counted.setdefault(name, Counter())[line.counts] += 1
-    found = [Rate(name, n["earned"], n["lost"], n["excused"], n["left out"]) for name, n in counted.items()]
+    found = [
+        Rate(name, n["earned"], n["lost"] + n["explained"], n["excused"], n["left out"]) for name, n in counted.items()
+    ]
     return sorted((rate for rate in found if rate.asked), key=lambda rate: -rate.lost)
 
 
@@ -238,10 +240,10 @@ def _tiles(classroom: Classroom) -> list[tuple[str, str]]:
 def losses(graded: Graded) -> str:
     """The checks that cost points, the first few by name."""
     lost = [
-        "a hidden scene" if line.check.startswith(HIDDEN) else line.check.removeprefix("image/")
+        "a hidden scene" if line.check.startswith(HIDDEN) else line.check.removeprefix("image/").removeprefix("fault/")
         for group in graded.record.groups
         for line in group.lines
-        if line.counts == "lost"
+        if line.counts in ("lost", "charged")
     ]
     names = list(dict.fromkeys(lost))
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""

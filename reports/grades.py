@@ -29,12 +29,20 @@ WORDS: dict[Outcome, str] = {
 }
 
 
+EARNED = ("earned", "explained")
+"""What a line may count as that earns points."""
+
+
 class Line(Frozen):
-    """One check of a group: earned, lost, excused because what it builds on failed, or left out as not its concern."""
+    """One check of a group.
+
+    counts: earned, lost, excused because what it builds on failed, left out as not its concern, explained by a known
+    fault and so earned; or the fault itself, charged.
+    """
 
     check: str
     verdict: Word
-    counts: Literal["earned", "lost", "excused", "left out"]
+    counts: Literal["earned", "lost", "excused", "left out", "explained", "charged"]
     why: str
 
 
@@ -49,7 +57,7 @@ class GroupScore(Frozen):
     @property
     def counted(self) -> int:
         """Checks that count, excused ones not among them."""
-        return sum(line.counts in ("earned", "lost") for line in self.lines)
+        return sum(line.counts in (*EARNED, "lost") for line in self.lines)
 
     @property
     def left_out(self) -> bool:
@@ -58,11 +66,18 @@ class GroupScore(Frozen):
 
     @property
     def passed(self) -> int:
-        return sum(line.counts == "earned" for line in self.lines)
+        return sum(line.counts in EARNED for line in self.lines)
+
+    @property
+    def charges(self) -> bool:
+        """Does it take points instead of giving them."""
+        return not self.points and all(line.counts == "charged" for line in self.lines)
 
     @property
     def sum_in_words(self) -> str:
         """How the points came about."""
+        if self.charges:
+            return f"{len(self.lines) or 'none'} explained what was wrong: {_points(self.earned)}"
         if self.left_out:
             return "left out: not asked of this tracer"
         excused = len(self.lines) - self.counted

@@ -72,8 +72,8 @@ def prairielearn(graded: Graded) -> dict[str, Any]:
 
 
 def _counted(record: Record) -> list[GroupScore]:
-    """The groups of which the points are the sum."""
-    return [group for group in record.groups if not group.left_out]
+    """The groups of which the points to earn are the sum."""
+    return [group for group in record.groups if not group.left_out and not group.charges]
 
 
 def _said(graded: Graded) -> str:
@@ -81,6 +81,7 @@ def _said(graded: Graded) -> str:
     parts = [f"{graded.score:g} of {record.points:g} points"]
     if record.outcome != "graded":
         parts.append(f"{WORDS[record.outcome]}: {record.message}")
+    parts += [f"{group.name}: {_output(group)}" for group in record.groups if group.charges and group.lines]
     parts += [f"by hand: {entry.points:+g} ({entry.reason})" for entry in graded.adjustments]
     return plain.paragraph("\n".join(parts))
 

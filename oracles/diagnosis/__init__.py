@@ -61,6 +61,11 @@ def diagnose(
     return _likely(evidence, best, alone, place) if best.wrong_explained else _unknown(evidence, alone, place)
 
 
+def disturbs(known: Fault, operation: str) -> bool:
+    """Whether a fault is in a formula that this operation of the probe protocol asks for."""
+    return any(known.entries & term.entries for term in TERMS if operation in term.probes)
+
+
 def predicted(exhibit: Exhibit, faults: Sequence[Fault], base: Rulebook = LECTURE) -> NDArray[np.float64]:
     """What the faults make of the scene, (height, width, 3): linear, before it is written to a file."""
     return rendered(exhibit.scene, composed(base, faults))
@@ -182,4 +187,4 @@ def _pictures(count: int, word: str) -> str:
     return f"{count} {word}{'' if count == 1 else 's'}"
 
 
-__all__ = ["SILENT", "Answers", "diagnose", "predicted"]
+__all__ = ["SILENT", "Answers", "diagnose", "disturbs", "predicted"]

@@ -11,6 +11,7 @@ from oracles.verdict import Verdict
 from raycheck.errors import StartError
 from raycheck.grading import speed
 from raycheck.grading.formulas import foreign_laws, law_verdicts, stability_verdicts
+from raycheck.grading.mistakes import Explained
 from raycheck.grading.patience import Patience
 from raycheck.grading.rubric import Rubric
 from raycheck.grading.score import Evidence
@@ -49,14 +50,14 @@ def timing(rubric: Rubric, seed: int, size: tuple[int, int], patience: Patience)
         return speed.Timing(None, "error", "it started before and does no longer")
 
 
-def gathered(rubric: Rubric, subject: CommandSubject, verdicts: Iterable[Verdict]) -> Evidence:
+def gathered(rubric: Rubric, subject: CommandSubject, verdicts: Iterable[Verdict], explained: Explained) -> Evidence:
     """A verdict for each check that counts; what was not asked is blocked."""
-    found = {verdict.check: verdict for verdict in verdicts}
+    by_name = {verdict.check: verdict for verdict in verdicts}
     for group in rubric.group:
         for check in group.checks:
             message = "not asked, no usable picture came"
-            found.setdefault(check, Verdict(check=check, verdict="blocked", message=message))
-    return Evidence(found, foreign=foreign_laws(subject, rubric.laws))
+            by_name.setdefault(check, Verdict(check=check, verdict="blocked", message=message))
+    return Evidence(by_name, explained.covered, explained.named, foreign_laws(subject, rubric.laws))
 
 
 def of_conformance(verdict: Verdict) -> bool:

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from oracles.verdict import Pictures, Verdict
+from oracles.verdict import Diagnosis, Pictures, Verdict
 from raycheck import VERSION, manifest, session
 from raycheck.errors import StartError, UsageError
-from raycheck.grading import evidence, speed
+from raycheck.grading import evidence, mistakes, speed
 from raycheck.grading.patience import Patience
 from raycheck.grading.rubric import Rubric
 from raycheck.grading.score import nothing, score
@@ -142,18 +142,22 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
     with workspace() as private, evidence.beside_others(rubric):
         _prepare(subject)
         try:
-            shown = _judged(patience, asked.rungs, asked.size, student)
-            secret = _judged(patience, hidden, None, student if _reveals(rubric) else private)
+            open_hearing = _hearing(patience, asked.rungs, asked.size, student)
+            shown = list(open_hearing.verdicts())
+            secret_hearing = _hearing(patience, hidden, None, student if _reveals(rubric) else private)
+            secret = list(secret_hearing.verdicts())
             told = secret if _reveals(rubric) else [veiled(verdict) for verdict in secret]
             pictures = (*shown, *told)
             first = next((v.message for v in pictures if v.verdict in BROKEN), "")
             broken = bool(pictures) and all(verdict.verdict in BROKEN for verdict in pictures)
             further = () if broken else evidence.formulas(rubric, asked.seed, subject, patience, shown, student)
+            found = mistakes.sought(rubric, open_hearing, secret_hearing, (*shown, *secret, *further), student)
         except StartError as error:
             raise _EndedError("start", str(error)) from None
     timing = speed.Timing(None) if broken else evidence.timing(rubric, asked.seed, asked.size, patience)
     verdicts = (*pictures, *further, *speed.speed_verdicts(timing, () if broken else rubric.speeds))
-    _write_results(asked, subject, [verdict for verdict in verdicts if evidence.of_conformance(verdict)], student)
+    told_of = [verdict for verdict in verdicts if evidence.of_conformance(verdict)]
+    _write_results(asked, subject, told_of, found.diagnosis, student)
     return Record(
         name=submission.name,
         slug=submission.slug,
@@ -161,7 +165,8 @@ def _asked(asked: Asked, submission: Submission, arrived: Arrived, student: Path
         tracer=subject.name,
         outcome="protocol" if broken else "graded",
         message=first if broken else "",
-        groups=score(rubric, evidence.gathered(rubric, subject, verdicts), hidden),
+        groups=score(rubric, evidence.gathered(rubric, subject, verdicts, found), hidden),
+        faults=tuple(found.named),
         outside=evidence.outside((*shown, *secret)),
         speed=timing.times,
     )
@@ -188,11 +193,11 @@ def _prepare(subject: CommandSubject) -> None:
         raise _EndedError("build", str(error)) from None
 
 
-def _judged(subject: Patience, rungs: Sequence[Rung], size: tuple[int, int] | None, folder: Path) -> list[Verdict]:
+def _hearing(subject: Patience, rungs: Sequence[Rung], size: tuple[int, int] | None, folder: Path) -> Hearing:
     """Every rung is asked, also where one it builds on failed: what passes is earned."""
     shape = f" --size {size[0]}x{size[1]}" if size else ""
     plan = Plan(rungs, size, 0, False, Known({}), f"raycheck check .{shape} --scenes {{scene}}")
-    return list(Hearing(subject, plan, folder).verdicts())
+    return Hearing(subject, plan, folder)
 
 
 def _reveals(rubric: Rubric) -> bool:
@@ -211,7 +216,9 @@ def veiled(verdict: Verdict) -> Verdict:
     return verdict.model_copy(update=veil)
 
 
-def _write_results(asked: Asked, subject: CommandSubject, verdicts: Sequence[Verdict], student: Path) -> None:
+def _write_results(
+    asked: Asked, subject: CommandSubject, verdicts: Sequence[Verdict], diagnosis: Diagnosis | None, student: Path
+) -> None:
     width, height = asked.size
     found = results.Results(
         suite=results.Suite(version=VERSION, catalogue=catalogue_hash()),
@@ -224,6 +231,7 @@ def _write_results(asked: Asked, subject: CommandSubject, verdicts: Sequence[Ver
         seconds=sum(verdict.seconds for verdict in verdicts),
         planned=len(verdicts),
         verdicts=tuple(verdicts),
+        diagnosis=diagnosis,
         complete=True,
     )
     results.write(found, student)

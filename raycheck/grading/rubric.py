@@ -97,12 +97,22 @@ class Hidden(Frozen):
     reveal: bool = False
 
 
+class Mistakes(Frozen):
+    """What a known fault costs, once, where known faults explain every wrong picture."""
+
+    points: Points
+
+
 class Rubric(Frozen):
-    """Groups of rungs, hidden scenes, limits; `tracer` stands in for a submission's missing raycheck.toml."""
+    """Groups of rungs, hidden scenes, limits; `tracer` stands in for a submission's missing raycheck.toml.
+
+    mistakes: None: nothing is diagnosed.
+    """
 
     name: Name
     group: Annotated[tuple[Group, ...], Field(min_length=1)]
     hidden: Hidden | None = None
+    mistakes: Mistakes | None = None
     limits: Limits = Limits()
     tracer: Manifest | None = None
 

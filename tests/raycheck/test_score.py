@@ -51,13 +51,13 @@ def test_a_blocked_check_is_excused() -> None:
 
 def test_a_fault_that_is_charged_elsewhere_costs_nothing_here() -> None:
     told = verdicts(headlight_plane="fail", headlight_sphere="fail")
-    group = scored(Evidence(told, excused={"image/headlight-sphere": "the same fault"}))
-    assert (group.earned, counts(group)) == (5.0, ["earned", "lost", "excused"])
+    group = scored(Evidence(told, explained={"image/headlight-sphere": "the same fault"}))
+    assert (group.earned, counts(group)) == (6.67, ["earned", "lost", "explained"])
     assert group.lines[2].why == "the same fault"
 
 
-def test_a_check_that_passed_is_earned_whatever_excuses_it() -> None:
-    group = scored(Evidence(verdicts(), excused={"image/background": "x"}, foreign={"image/background": "x"}))
+def test_a_check_that_passed_is_earned_whatever_explains_it() -> None:
+    group = scored(Evidence(verdicts(), explained={"image/background": "x"}, foreign={"image/background": "x"}))
     assert counts(group) == ["earned"] * 3
 
 
@@ -77,3 +77,32 @@ def test_a_group_of_which_nothing_could_be_shown_earns_nothing_and_counts() -> N
     told = verdicts(**{str(name).replace("-", "_"): "blocked" for name in GROUP["rungs"]})
     group = scored(Evidence(told))
     assert (group.earned, group.left_out) == (0.0, False)
+
+
+def with_mistakes(points: float, **words: str) -> tuple[GroupScore, ...]:
+    rubric = Rubric.model_validate({"name": "r", "group": [GROUP], "mistakes": {"points": points}})
+    found = verdicts(**words)
+    covered = {check: "a" for check, verdict in found.items() if verdict.verdict == "fail"}
+    return score(rubric, Evidence(found, covered, {"a-fault": "what it is"} if covered else {}), ())
+
+
+def test_a_known_fault_costs_its_points_once_however_much_it_breaks() -> None:
+    group, known = with_mistakes(2, background="fail", headlight_plane="fail", headlight_sphere="fail")
+    assert (group.earned, counts(group)) == (10.0, ["explained"] * 3)
+    assert (known.earned, counts(known), known.points) == (-2.0, ["charged"], 0.0)
+
+
+def test_a_known_fault_costs_no_more_than_what_it_breaks() -> None:
+    group, known = with_mistakes(8, headlight_sphere="fail")
+    assert (group.earned, known.earned) == (10.0, -3.33)  # 10/3 points were to be lost
+
+
+def test_what_no_fault_explains_is_charged_as_ever() -> None:
+    group, known = with_mistakes(8, headlight_sphere="crash")
+    assert (group.earned, counts(group)[2]) == (6.67, "lost")
+    assert (known.earned, known.lines) == (0.0, ())
+
+
+def test_a_right_tracer_has_no_mistakes() -> None:
+    group, known = with_mistakes(8)
+    assert (group.earned, known.earned, known.sum_in_words) == (10.0, 0.0, "none explained what was wrong: 0")
