@@ -21,7 +21,7 @@ SAFETY = 2.0
 """On the maxima that were measured for the lecture's formula (docs/laws.md)."""
 
 EXTENT = 6.0
-"""No scene of the catalogue reaches farther from its origin."""
+"""No scene of the catalogue in which rays start on surfaces reaches farther from its origin."""
 
 NEAR = EXTENT * np.sqrt(8.0 * 2.0**-24)
 """Hits nearer than this may be skipped: a tracer has one least distance for all scenes, and L·sqrt(8u) is
