@@ -36,6 +36,11 @@ def test_a_scene_of_the_catalogue_notices_the_fault(entry: Fault) -> None:
     assert next(kills(benches(), entry), None)
 
 
+def test_every_scene_of_the_catalogue_notices_a_fault() -> None:
+    idle = [bench.scene.name for bench in benches() if not any(bench.kill(entry) for entry in NOTICED)]
+    assert idle == []
+
+
 @pytest.mark.parametrize("entry", EXCUSED, ids=name_of)
 def test_a_fault_said_to_go_unnoticed_does_and_says_why(entry: Fault) -> None:
     assert entry.reason
