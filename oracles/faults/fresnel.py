@@ -52,6 +52,10 @@ def _schlick_of_the_root(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
     return select(total, 1.0, first + (1.0 - first) * power(1.0 + dot(v, n), 5))
 
 
+def _white(weight: Vec) -> Vec:
+    return Vec(*(select(less(0.0, part), 1.0, 0.0) for part in weight))
+
+
 def _weighed(kept: Any) -> Any:
     """`weights` with kept(reflect, transmit, total, F) for the two weights where the scene asks for Fresnel's share."""
 
@@ -117,6 +121,15 @@ FAULTS = (
         "glass is a mirror straight on",
         "F is what is reflected",
         weights=_weighed(lambda r, t, F: (r * (1.0 - F), t * F)),
+    ),
+    _glass(
+        "fresnel-for-the-weights",
+        _BORN,
+        "keep = F; pass = 1 - F;",
+        "keep = reflect*F; pass = transmit*(1 - F);",
+        "clear where the glass should be tinted",
+        "F multiplies the material's weights",
+        weights=_weighed(lambda r, t, F: (_white(r) * F, _white(t) * (1.0 - F))),
     ),
     _glass(
         "fresnel-on-the-mirror-only",

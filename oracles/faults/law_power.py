@@ -58,7 +58,7 @@ class LawBench:
     @property
     def names(self) -> tuple[str, ...]:
         """All laws, in the book's order."""
-        return tuple(law.name for law in (*self.formulas, *self.pictures))
+        return (*(law.name for law in self.formulas), *(law.name for law in self.pictures))
 
     def kills(self, entry: Entry) -> Iterator[LawKill]:
         """Every law that the fault or twin breaks, in the book's order."""

@@ -62,10 +62,13 @@ def _standing(
     # The tolerance was taken about the lanes' value; the certified one lies within its own bound of it
     reach = expected.tolerance + np.abs(expected.pixels - proved.value) + proved.bound
     outside = compare(party.picture, replace(expected, pixels=proved.value, tolerance=reach)).outside
-    accounted, reasons = np.zeros_like(outside), []
+    accounted = np.zeros_like(outside)
+    reasons: list[str] = []
     for habit in party.habits:
         more = explained(scene, party.picture, outside & ~accounted, habit, party.precision, lanes)
-        accounted, reasons = accounted | more, reasons + [habit.reason] * bool(more.any())
+        accounted = accounted | more
+        if more.any():
+            reasons.append(habit.reason)
     # An upper bound of the error: our own float64 picture is the middle of the certified one
     off = (np.abs(party.picture.values - proved.value) + proved.bound).max(axis=-1)
     error = np.where(proved.decided, off, 0.0)
