@@ -78,6 +78,14 @@ def on_one_scene(faults: list[Fault], size: tuple[int, int]) -> tuple[int, dict[
     return len(pictures), {name: sum(not gate(expected, got) for got in pictures) for name, gate in GATES.items()}
 
 
+def _without(gate: str, found: dict[str, set[str]]) -> list[str]:
+    return [name for name, gates in found.items() if gate not in gates]
+
+
+def _counted(names: list[str]) -> str:
+    return f"{len(names)}: {', '.join(names)}" if names else "0"
+
+
 def main(size: tuple[int, int]) -> None:
     """Both tables."""
     begin, here = time.perf_counter(), machine()
@@ -89,11 +97,8 @@ def main(size: tuple[int, int]) -> None:
     print(f"\n| gate | faults missed, of {len(faults)} | correct tracers failed, of {len(TWINS)} |", end="")
     print(f" missed on lecture-final alone, of {seen} |\n|---|---|---|---|")
     for gate in GATES:
-        missed = [name for name, gates in noticed.items() if gate not in gates]
-        wrong = [name for name, gates in wronged.items() if gate in gates]
-        print(
-            f"| {gate} | {len(missed)}: {', '.join(missed)} | {len(wrong)}{': ' * bool(wrong)}{', '.join(wrong)} | {unseen[gate]} |"
-        )
+        missed, wrong = _without(gate, noticed), [name for name, gates in wronged.items() if gate in gates]
+        print(f"| {gate} | {_counted(missed)} | {_counted(wrong)} | {unseen[gate]} |")
     none = [name for name, gates in noticed.items() if not gates]
     print(f"\nmissed by all of them: {len(none)}: {', '.join(none)}")
     print(f"{time.perf_counter() - begin:.0f} s, {time.process_time():.0f} s of a core")

@@ -20,7 +20,7 @@ Gate = Callable[[Codes, Codes], bool]
 TOLERATED, SHARE = 0.016, 0.01
 """Blender, tests/python/modules/render_report.py: `--fail 0.016 --failpercent 1`."""
 MEAN_FLIP = 0.05
-"""MaterialX, python/MaterialXTest/diff_images.py."""
+"""MaterialX, diff_test_runs/diff_images.py."""
 REACH = 10
 """Pixels that FLIP's widest filter reaches at 67 a degree: 3·sqrt(0.04/2π²)·67 = 9.05 (Andersson et al. 2020)."""
 PEAK = 40.0
