@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import flip_evaluator
 import numpy as np
 from numpy.typing import NDArray
 
+from oracles import gates
 from oracles.compare import compare
 from oracles.images import Picture
 from oracles.truth import Truth, truth
@@ -81,15 +81,12 @@ def seen_by_us(pixels: Pixels, expected: Truth) -> bool:
 
 def seen_by_blender(pixels: Pixels, expected: Truth) -> bool:
     """Judged by the 1 % rule."""
-    apart = np.abs(srgb_codes(pixels) - srgb_codes(expected.pixels)).max(axis=-1) > 0.016 * 255
-    return bool(apart.mean() > 0.01)
+    return gates.blender(srgb_codes(expected.pixels), srgb_codes(pixels))
 
 
 def seen_by_flip(pixels: Pixels, expected: Truth) -> bool:
     """Judged by mean FLIP."""
-    one, other = ((srgb_codes(p) / 255.0).astype(np.float32) for p in (expected.pixels, pixels))
-    _, mean, _ = flip_evaluator.evaluate(one, other, "LDR", applyMagma=False)
-    return bool(mean > 0.05)
+    return gates.mean_flip(srgb_codes(expected.pixels), srgb_codes(pixels))
 
 
 GATES = (seen_by_us, seen_by_blender, seen_by_flip)

@@ -36,13 +36,13 @@ def appearance(expected: Reals, got: Reals, shown_expected: Reals, shown_got: Re
     return Appearance(
         rmse=math.sqrt(float(np.mean((expected - got) ** 2))),
         psnr=10.0 * math.log10(1.0 / squared) if squared > 0.0 else math.inf,
-        flip=_flip(shown_expected, shown_got),
+        flip=flip(shown_expected, shown_got),
         delta_e_2000=e2000,
         delta_e_itp=itp,
     )
 
 
-def _flip(expected: Reals, got: Reals) -> float | None:
+def flip(expected: Reals, got: Reals) -> float | None:
     """Mean FLIP (Andersson et al. 2020) at the default viewing distance; None without the package."""
     if find_spec("flip_evaluator") is None:
         return None

@@ -73,7 +73,7 @@ class PlainTracer:
         hit = self.nearest(o, v, start)
         background = self.vec(self.scene.background)
         if hit is None:
-            return rules.seen(background)  # L11 "three features": the ray goes astray
+            return rules.seen(rules.stray(background, generation))  # L11 "three features": the ray goes astray
 
         # The light on the surface, and where the ray goes on
         material = self.scene.materials[hit.thing.material]
@@ -131,6 +131,7 @@ class PlainTracer:
         rules = self.rules
         material = self.scene.materials[hit.thing.material]
         ambient = self.vec(material.ambient)
+        v = rules.view_vector(v, hit.p, self.vec(self.scene.camera.eye))
         colour = rules.ambient_light(ambient)
         for light in self.scene.lights:
             is_point = isinstance(light, PointLight)

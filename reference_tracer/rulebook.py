@@ -59,6 +59,11 @@ def generations(depth: int) -> int:
     return depth
 
 
+def stray(background: Vec, generation: int) -> Vec:
+    """What a ray of that generation brings that meets nothing. L11 "Nothing to meet": the background, in every one."""
+    return background
+
+
 def seen(colour: Vec) -> Vec:
     """What a ray brings back of the colour it found: all, unclamped."""
     return colour
@@ -86,6 +91,7 @@ class Rulebook:
     weights: Callable[..., tuple[Vec, Vec]] = weights
     light_vector: Callable[..., tuple[Vec, Number]] = shading.light_vector
     attenuation: Callable[..., Number] = shading.attenuation
+    view_vector: Callable[[Vec, Vec, Vec], Vec] = shading.view_vector
     lambert: Callable[[Vec, Vec], Number] = shading.lambert
     phong: Callable[..., Number] = shading.phong
     direct_light: Callable[..., Vec] = shading.direct_light
@@ -96,6 +102,7 @@ class Rulebook:
     mix: Callable[[Vec, Vec, Vec, Vec, Vec], Vec] = mix
     last: Callable[[Vec, Vec, Vec, Vec, Vec], Vec] = last
     generations: Callable[[int], int] = generations
+    stray: Callable[[Vec, int], Vec] = stray
     seen: Callable[[Vec], Vec] = seen
     encode: Callable[..., display.Codes] = display.encode
 

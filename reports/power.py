@@ -1,4 +1,4 @@
-"""power.html and power.json: which scenes notice which known mistake."""
+"""power.html and power.json: which scenes and laws notice which known mistake."""
 
 from __future__ import annotations
 
@@ -24,14 +24,22 @@ class SceneKill(Frozen):
     excess: float | None
 
 
+class LawKill(Frozen):
+    """A law that a tracer breaks, by how many tolerances (None: none was tolerated)."""
+
+    law: str
+    excess: float | None
+
+
 class FaultPower(Frozen):
-    """One fault before all scenes; fate and reason as the dictionary says."""
+    """One fault before all scenes and laws; fate and reason as the dictionary says."""
 
     name: str
     group: str
     fate: Literal["killed", "survives", "equivalent"]
     reason: str
     kills: tuple[SceneKill, ...]
+    laws: tuple[LawKill, ...]
 
     @property
     def worst(self) -> float:
@@ -40,11 +48,17 @@ class FaultPower(Frozen):
 
 
 class TwinPower(Frozen):
-    """One correct tracer, and the scenes that wrongly fail it."""
+    """One correct tracer, and the scenes and laws that wrongly fail it."""
 
     name: str
     how: str
     kills: tuple[SceneKill, ...]
+    laws: tuple[LawKill, ...]
+
+    @property
+    def failed_by(self) -> tuple[str, ...]:
+        """Names of those scenes and laws."""
+        return (*(kill.scene for kill in self.kills), *(kill.law for kill in self.laws))
 
 
 class Power(Frozen):
@@ -58,6 +72,7 @@ class Power(Frozen):
     seconds: float
     size: str
     scenes: tuple[str, ...]
+    laws: tuple[str, ...]
     faults: tuple[FaultPower, ...]
     twins: tuple[TwinPower, ...]
 
@@ -68,43 +83,52 @@ class Power(Frozen):
 
     @property
     def refuted(self) -> tuple[FaultPower, ...]:
-        """Faults that a scene notices although the dictionary says that none can."""
-        return tuple(fault for fault in self.faults if fault.kills and fault.fate == "equivalent")
+        """Faults that a scene or a law notices although the dictionary says that none can."""
+        return tuple(fault for fault in self.faults if (fault.kills or fault.laws) and fault.fate == "equivalent")
 
     @property
     def wronged(self) -> tuple[TwinPower, ...]:
-        """Correct tracers that a scene fails."""
-        return tuple(twin for twin in self.twins if twin.kills)
+        """Correct tracers that a scene or a law fails."""
+        return tuple(twin for twin in self.twins if twin.failed_by)
 
     @property
     def idle(self) -> tuple[str, ...]:
-        """Scenes that notice no fault."""
+        """Scenes and laws that notice no fault."""
         used = {kill.scene for fault in self.faults for kill in fault.kills}
-        return tuple(scene for scene in self.scenes if scene not in used)
+        used |= {kill.law for fault in self.faults for kill in fault.laws}
+        return tuple(check for check in (*self.scenes, *self.laws) if check not in used)
 
     @property
     def holds(self) -> bool:
-        """Every fault is noticed or excused with a reason, no correct tracer is failed, and no scene is idle."""
+        """Every fault is noticed or excused with a reason, no correct tracer is failed, no scene or law is idle."""
         return not (self.missed or self.refuted or self.wronged or self.idle)
 
 
 def lines(found: Power) -> Iterator[str]:
     """One line a fault, then what is wrong, then the sum."""
-    yield f"{'fault':<40} {'scenes':>6} {'tolerances':>11}  first scene"
+    yield f"{'fault':<40} {'scenes':>6} {'laws':>5} {'tolerances':>11}  first scene and law"
     for fault in found.faults:
-        first = fault.kills[0].scene if fault.kills else f"{fault.fate}: {fault.reason}" if fault.reason else "-"
-        yield f"{fault.name:<40} {len(fault.kills):>6} {measured.number(fault.worst):>11}  {first}"
+        worst = measured.number(fault.worst)
+        yield f"{fault.name:<40} {len(fault.kills):>6} {len(fault.laws):>5} {worst:>11}  {_first(fault)}"
     yield from (f"MISSED: no scene notices {fault.name}" for fault in found.missed)
     for fault in found.refuted:
-        yield f"REFUTED: {fault.kills[0].scene} notices {fault.name}, said to be equivalent"
+        yield f"REFUTED: {_first(fault)} notices {fault.name}, said to be equivalent"
     for twin in found.wronged:
-        yield f"WRONGED: {twin.kills[0].scene} fails {twin.name}, which is correct ({twin.how})"
-    yield from (f"IDLE: {scene} notices no fault" for scene in found.idle)
+        yield f"WRONGED: {twin.failed_by[0]} fails {twin.name}, which is correct ({twin.how})"
+    yield from (f"IDLE: {check} notices no fault" for check in found.idle)
     noticed = sum(bool(fault.kills) for fault in found.faults)
+    by_laws = sum(bool(fault.laws) for fault in found.faults)
     yield (
-        f"{noticed} of {len(found.faults)} faults are noticed on {len(found.scenes)} scenes ({found.size}); "
+        f"{noticed} of {len(found.faults)} faults are noticed on {len(found.scenes)} scenes ({found.size}), "
+        f"{by_laws} by {len(found.laws)} laws; "
         f"{len(found.wronged)} of {len(found.twins)} correct tracers are failed"
     )
+
+
+def _first(fault: FaultPower) -> str:
+    """The first scene and law that notice it, else why none does."""
+    names = [kill.scene for kill in fault.kills[:1]] + [kill.law for kill in fault.laws[:1]]
+    return ", ".join(names) or (f"{fault.fate}: {fault.reason}" if fault.reason else "-")
 
 
 def schema() -> str:

@@ -66,7 +66,7 @@ TERMS = (
     ),
     _term("ambient", "ambient_light", "RGB = ambient + diffuse·cosθ", "uRT-10-RT5-Colors-Ambient_diffuse"),
     _term("diffuse", "lambert", "cosθ = max(i∘n, 0)", "Ex) Bad and Good Case", "phong"),
-    _term("specular", "phong reflect", "r = 2(i∘n)n - i; specular·max(r∘(-v), 0)^s", "Phong's effect Result", "phong"),
+    _term("specular", "phong reflect view_vector", "r = 2(i∘n)n - i; specular·max(r∘(-v), 0)^s", "Phong's effect Result", "phong"),
     _term(
         "visibility",
         "blocks shaded_light",
@@ -81,7 +81,7 @@ TERMS = (
         "RGB = local + reflect·colour(p, r) + transmit·colour(p, t)",
         "Refraction with geo.tr vector",
     ),
-    _term("generation", "generations last", "generation < depth", "Ray Tracing has three features"),
+    _term("generation", "generations last stray", "generation < depth", "Ray Tracing has three features"),
     _term("picture", "seen encode", "linear values, R, G, B, the top row first", "Basic Buffering"),
 )
 """In the order of a ray's life."""

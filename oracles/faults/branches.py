@@ -41,6 +41,11 @@ def _red_for_all(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, transm
     return found
 
 
+def _passes_the_rest(reflect: Vec, transmit: Vec, total: Condition, asked: bool, share: Any) -> tuple[Vec, Vec]:
+    rest = Vec(*(select(_any(transmit), 1.0 - part, 0.0) for part in reflect))
+    return rulebook.weights(reflect, rest, total, asked, share)
+
+
 _PHONG = "Phong Effect"
 _RESULT = "Phong's effect Result"
 _MIRROR = "Mirror with No Transparency"
@@ -50,6 +55,7 @@ _BEND = "Refraction Vector Calculation"
 _CODE = "Get Refraction Vector"
 _TR = "Refraction with geo.tr vector"
 
+_NOTHING = "Nothing to meet"
 _THREE = "Ray Tracing has three features"
 
 _SUM = "c = local + reflect*find_rgb(p, r) + transmit*find_rgb(p, t);"
@@ -162,6 +168,42 @@ FAULTS = (
         "mirrors show only what has their own colour",
         "the reflected light is added as it is",
         mix=lambda own, r, a, t, b: own + own * (r * a + t * b),
+    ),
+    _mix(
+        "branches-weighed-twice",
+        _TR,
+        "c = local + reflect*find_rgb(p, r, reflect*weight) + ...;",
+        _SUM,
+        "mirrors and glass are too dark",
+        "weigh where the colour comes back, or on the way there, not both",
+        mix=lambda own, r, a, t, b: rulebook.mix(own, r * r, a, t * t, b),
+    ),
+    _mix(
+        "what-is-not-reflected-passes",
+        _TR,
+        "c = local + reflect*find_rgb(p, r) + (1 - reflect)*find_rgb(p, t);",
+        _SUM,
+        "glass is too clear, and has no colour of its own",
+        "transmit is the material's own weight",
+        weights=_passes_the_rest,
+    ),
+    _depth(
+        "strays-in-mirrors-are-black",
+        _NOTHING,
+        "if (k < 0) return generation == 0 ? background : 0;",
+        "if (k < 0) return background;",
+        "mirrors and glass are black where they show the sky",
+        "a reflected or refracted ray that meets nothing brings the background as well",
+        stray=lambda background, generation: background if generation == 0 else background * 0.0,
+    ),
+    _depth(
+        "strays-before-the-eye-are-black",
+        _NOTHING,
+        "clear the picture; draw only what is hit;",
+        "if (k < 0) return background;",
+        "the sky is black, but mirrors show it",
+        "an eye ray that meets nothing brings the background as well",
+        stray=lambda background, generation: background * 0.0 if generation == 0 else background,
     ),
     _depth(
         "one-generation-too-few",

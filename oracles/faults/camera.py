@@ -59,6 +59,11 @@ def _half_view(i: Any, j: Any, w: Any, h: Any, sample: Any) -> Point:
     return 0.5 * X, 0.5 * Y
 
 
+def _even_angles(i: Any, j: Any, w: Any, h: Any, sample: Any) -> Point:
+    X, Y = plane_point(i, j, w, h, sample)
+    return np.tan(X * (np.pi / 4.0)), np.tan(Y * (np.pi / 4.0))
+
+
 def _not_unit(forward: Vec, right: Vec, up: Vec, X: Any, Y: Any) -> Vec:
     found: Vec = (forward + right * X) + up * Y
     return found
@@ -177,6 +182,14 @@ FAULTS = (
         "everything is twice as large",
         "the image plane reaches from -1 to 1",
         _half_view,
+    ),
+    _point(
+        "even-angles-for-even-points",
+        "X = tan((-1 + 2*(x + sx)/w)*fov/2);",
+        _X,
+        "straight edges bend, balls are too small between middle and edge",
+        "pixels are evenly spaced on the plane, not in the angle",
+        _even_angles,
     ),
     _ray(
         "ray-not-unit",

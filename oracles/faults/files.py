@@ -43,12 +43,28 @@ def _without_last_row(pixels: Reals) -> Reals:
     return np.concatenate([pixels[:-1], np.zeros_like(pixels[-1:])])
 
 
+def _by_columns(pixels: Reals) -> Reals:
+    return np.ascontiguousarray(pixels.swapaxes(0, 1)).reshape(pixels.shape)
+
+
+def _by_channels(pixels: Reals) -> Reals:
+    return np.ascontiguousarray(np.moveaxis(pixels, -1, 0)).reshape(pixels.shape)
+
+
+def _power_codes(pixels: Reals, scene: Scene) -> Picture:
+    if scene.display == "lecture":
+        return Picture(lecture_codes(pixels).astype(np.float64), 255)
+    c = np.clip(pixels.astype(np.float64), 0.0, 1.0)
+    return Picture(np.floor(255.0 * c ** (1.0 / 2.2) + 0.5), 255)
+
+
 def _grey(pixels: Reals) -> Reals:
     return np.repeat(pixels @ np.array([[0.2126], [0.7152], [0.0722]]), 3, axis=-1)
 
 
 def _fault(name: str, source: str, wrong: str, right: str, seen: str, mend: str, picture: Any) -> Fault:
-    return Fault(name, "picture", f'L11 "{source}"', wrong, right, seen, mend, picture=picture)
+    said = source if "," in source else f'L11 "{source}"'
+    return Fault(name, "picture", said, wrong, right, seen, mend, picture=picture)
 
 
 _BUFFER, _BAD = "Basic Buffering", "Ex) Bad and Good Case"
@@ -91,6 +107,24 @@ FAULTS = (
         "the picture is slanted",
         "the length of a row in memory is not that in the file",
         _floats(_slanted),
+    ),
+    _fault(
+        "column-by-column",
+        _BUFFER,
+        "data[i*h + j] = c;",
+        "data[j*w + i] = c;",
+        "stripes",
+        "rows one after another, each of w pixels",
+        _floats(_by_columns),
+    ),
+    _fault(
+        "channel-by-channel",
+        _BUFFER,
+        "data[k*w*h + j*w + i] = c[k];",
+        "data[(j*w + i)*3 + k] = c[k];",
+        "three small grey pictures",
+        "the three channels of a pixel stand together",
+        _floats(_by_channels),
     ),
     _fault(
         "one-pixel-late",
@@ -139,6 +173,15 @@ FAULTS = (
         "what is brighter than 1 is cut",
         "clamp when a byte is made",
         _floats(lambda p: np.clip(p, 0.0, 1.0)),
+    ),
+    _fault(
+        "tone-mapped",
+        "Reinhard et al., Photographic Tone Reproduction for Digital Images, 2002",
+        "write(c/(1 + c));",
+        _FILE,
+        "everything is too dark, bright things most",
+        "a float file holds linear values",
+        _floats(lambda p: p / (1.0 + np.maximum(p, 0.0))),
     ),
     _fault(
         "scaled-to-the-brightest",
@@ -202,6 +245,15 @@ FAULTS = (
         "too dark where the scene asks for sRGB",
         "the scene's `display` says how to encode",
         lambda pixels, scene: Picture(lecture_codes(pixels).astype(np.float64), 255),
+    ),
+    _fault(
+        "byte-gamma-for-srgb",
+        _BAD,
+        "code = round(255*pow(c, 1/2.2));  // srgb asked for",
+        "code = round(255*srgb(c));",
+        "dark parts are off by some codes where the scene asks for sRGB",
+        "sRGB has a straight piece and the exponent 1/2.4",
+        _power_codes,
     ),
     _fault(
         "byte-always-srgb",

@@ -7,7 +7,7 @@ from typing import Any
 from oracles.faults.fault import Fate, Fault, instead
 from reference_tracer import rulebook
 from reference_tracer.formulas import optics
-from reference_tracer.numbers import Condition, Number, less, select, sqrt0
+from reference_tracer.numbers import Condition, Number, less, power, select, sqrt0
 from reference_tracer.vector import Vec, dot, select_vec
 
 
@@ -40,6 +40,22 @@ def _no_total_case(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
     return 0.5 * (r_s * r_s + r_p * r_p)
 
 
+def _straight_on(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
+    r = (index - 1.0) / (index + 1.0)
+    return r * r + 0.0 * v.x
+
+
+def _schlick_of_the_root(v: Vec, n: Vec, leaving: Any, index: Any) -> Number:
+    r = (index - 1.0) / (index + 1.0)
+    first = select(less(r, 0.0), -r, r)
+    _, total = optics.refract(v, n, leaving, index)
+    return select(total, 1.0, first + (1.0 - first) * power(1.0 + dot(v, n), 5))
+
+
+def _white(weight: Vec) -> Vec:
+    return Vec(*(select(less(0.0, part), 1.0, 0.0) for part in weight))
+
+
 def _weighed(kept: Any) -> Any:
     """`weights` with kept(reflect, transmit, total, F) for the two weights where the scene asks for Fresnel's share."""
 
@@ -60,6 +76,7 @@ _T = "t = p_u*s2 - n*sqrt(1 - s2*s2);"
 _F = "F = (r_s*r_s + r_p*r_p)/2;"
 
 _BORN = "Born & Wolf, Principles of Optics, 1.5.2"
+_SCHLICK = "Schlick, An Inexpensive BRDF Model for Physically-based Rendering, 1994"
 
 
 def _make(group: str) -> Any:
@@ -74,7 +91,7 @@ def _make(group: str) -> Any:
         reason: str = "",
         **entries: Any,
     ) -> Fault:
-        said = source if source == _BORN else f'L11 "{source}"'
+        said = source if source in (_BORN, _SCHLICK) else f'L11 "{source}"'
         return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
 
     return entry
@@ -104,6 +121,15 @@ FAULTS = (
         "glass is a mirror straight on",
         "F is what is reflected",
         weights=_weighed(lambda r, t, F: (r * (1.0 - F), t * F)),
+    ),
+    _glass(
+        "fresnel-for-the-weights",
+        _BORN,
+        "keep = F; pass = 1 - F;",
+        "keep = reflect*F; pass = transmit*(1 - F);",
+        "clear where the glass should be tinted",
+        "F multiplies the material's weights",
+        weights=_weighed(lambda r, t, F: (_white(r) * F, _white(t) * (1.0 - F))),
     ),
     _glass(
         "fresnel-on-the-mirror-only",
@@ -140,6 +166,24 @@ FAULTS = (
         "wrong brightness where light leaves glass",
         "invert on leaving, as in Snell's law",
         fresnel=lambda v, n, leaving, index: optics.fresnel(v, n, leaving & ~leaving, index),
+    ),
+    _glass(
+        "fresnel-straight-on-everywhere",
+        _BORN,
+        "F = pow((index - 1)/(index + 1), 2);",
+        _F,
+        "glass has no bright rim",
+        "that is F at normal incidence only",
+        fresnel=_straight_on,
+    ),
+    _glass(
+        "schlick-of-the-root",
+        _SCHLICK,
+        "F0 = fabs(index - 1)/(index + 1); F = F0 + (1 - F0)*pow(1 - cosθ, 5);",
+        _F,
+        "glass reflects far too much",
+        "F0 is the square of that; and the scene asks for Fresnel's own formula",
+        fresnel=_schlick_of_the_root,
     ),
     _glass(
         "fresnel-without-total-reflection",

@@ -80,6 +80,12 @@ def _angles_for_sines(v: Vec, n: Vec, leaving: Any, index: Any) -> Bent:
     return t, at_least(bent, np.pi / 2)
 
 
+def _total_on_entering(v: Vec, n: Vec, leaving: Any, index: Any) -> Bent:
+    t, total = optics.refract(v, n, leaving, index)
+    p = _across(v, n) * index
+    return t, total | at_least(dot(p, p), 1.0)
+
+
 _BEND = "Refraction Vector Calculation"
 _CODE = "Get Refraction Vector"
 _TR = "Refraction with geo.tr vector"
@@ -190,6 +196,24 @@ FAULTS = (
         "glass balls invert nothing",
         "the ray bends on leaving too",
         refract=_entering_only,
+    ),
+    _glass(
+        "total-reflection-on-entering",
+        _CODE,
+        "if (s1*index >= 1) return 0;  // entering too",
+        "if (s2 >= 1) return 0;",
+        "a black rim on glass seen from outside",
+        "into the denser medium there is always a refracted ray: test sinθ2",
+        refract=_total_on_entering,
+    ),
+    _glass(
+        "index-squared",
+        "Refraction",
+        "s2 = leaving ? s1*eps : s1/eps;  // eps = index*index",
+        _RATIO,
+        "glass bends too much",
+        "Snell's law has the index, not the permittivity",
+        refract=lambda v, n, leaving, index: optics.refract(v, n, leaving, index * index),
     ),
     _glass(
         "p-not-unit",

@@ -27,6 +27,21 @@ def _two_n(i: Vec, n: Vec) -> Vec:
     return unit(n * 2.0 - i)
 
 
+def _by_components(i: Vec, n: Vec) -> Vec:
+    found: Vec = n * (i * n) * 2.0 - i
+    return found
+
+
+def _copied_line(i: Vec, n: Vec) -> Vec:
+    r = optics.reflect(i, n)
+    return Vec(r.x, r.y, n.y * (2.0 * dot(i, n)) - i.z)
+
+
+def _schlick(i: Vec, n: Vec, v: Vec, s: Any, mirrored: Vec) -> Number:
+    x = shading.phong(i, n, v, s * 0 + 1, mirrored)
+    return x / (s - s * x + x)
+
+
 _PHONG = "Phong Effect"
 _RESULT = "Phong's effect Result"
 _MIRROR = "Mirror with No Transparency"
@@ -164,6 +179,51 @@ FAULTS = (
         "no highlights",
         "with i away from the surface the signs turn",
         reflect=lambda i, n: -optics.reflect(i, n),
+    ),
+    _phong(
+        "light-mirrored-by-components",
+        _MATH,
+        "r = 2*(i*n)*n - i;  // i*n by components",
+        _R,
+        "highlights are displaced and of odd shapes",
+        "i∘n is one number: the sum of the three products",
+        reflect=_by_components,
+    ),
+    _phong(
+        "light-mirrored-with-a-copied-line",
+        _MATH,
+        "r.z = 2*d*n.y - i.z;",
+        "r.z = 2*d*n.z - i.z;",
+        "highlights are displaced to one side",
+        "a line copied for the next component",
+        reflect=_copied_line,
+    ),
+    _phong(
+        "highlight-seen-from-the-camera",
+        _PHONG,
+        "view = unit(camera - p);  // in every generation",
+        "view = -v;  // of the ray that came here",
+        "highlights in mirrors stand in the wrong places",
+        "in a mirror the ray comes from the mirror, not from the camera",
+        view_vector=lambda v, p, eye: unit(p - eye),
+    ),
+    _phong(
+        "gloss-by-schlick",
+        _RESULT,
+        "gloss = x/(s - s*x + x);",
+        _S,
+        "highlights have wide tails",
+        "that is Schlick's cheap stand-in for the power (Graphics Gems IV, 1994), not the power",
+        phong=_schlick,
+    ),
+    _mirror(
+        "mirrored-by-components",
+        _MATH,
+        "r = 2*(i*n)*n - i;  // i*n by components",
+        _R,
+        "mirror images are torn",
+        "i∘n is one number: the sum of the three products",
+        mirror=_by_components,
     ),
     _mirror(
         "mirrored-by-2n-minus-i",

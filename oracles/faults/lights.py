@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from oracles.faults.fault import Fate, Fault, instead
+from oracles.faults.fault import Fault, instead
 from reference_tracer.formulas import shading
 from reference_tracer.numbers import Number, clamp0, less, select
 from reference_tracer.vector import Vec, dot, length, select_vec, unit
@@ -70,6 +70,16 @@ def _one_plus(distance: Any, inverse: Any, square: Any) -> Number:
     return shading.attenuation(distance + 1.0, inverse, square)
 
 
+def _over_sphere(distance: Any, inverse: Any, square: Any) -> Number:
+    factor = shading.attenuation(distance, inverse, square)
+    return select(square, factor * (0.25 / np.pi), factor)
+
+
+def _over_square(k: Vec, p: Vec, is_point: Any) -> tuple[Vec, Number]:
+    w = select_vec(is_point, k - p, k)
+    return w / dot(w, w), shading.light_vector(k, p, is_point)[1]
+
+
 def _absolute(i: Vec, n: Vec) -> Number:
     cosine = dot(i, n)
     return select(less(cosine, 0.0), -cosine, cosine)
@@ -98,12 +108,8 @@ _SUM = "c = c + α*light*(diffuse*cosθ + specular*gloss);"
 _ALPHA = "α = kind == inverse ? 1/d : kind == inverse_square ? 1/(d*d) : 1;"
 
 
-def _light(
-    name: str, slide: str, wrong: str, right: str, seen: str, mend: str, survives: str = "", **entries: Any
-) -> Fault:
-    rules = instead(name, **entries)
-    fate: Fate = "survives" if survives else "killed"
-    return Fault(name, "light", f'L11 "{slide}"', wrong, right, seen, mend, rules, None, fate, survives)
+def _light(name: str, slide: str, wrong: str, right: str, seen: str, mend: str, **entries: Any) -> Fault:
+    return Fault(name, "light", f'L11 "{slide}"', wrong, right, seen, mend, instead(name, **entries))
 
 
 FAULTS = (
@@ -213,7 +219,6 @@ FAULTS = (
         _ALPHA,
         "too dark within one unit of a lamp",
         "1/d above 1 is right near a lamp",
-        survives="No lamp of the catalogue that fades shines on anything within one unit.",
         attenuation=_at_most_one,
     ),
     _light(
@@ -224,6 +229,24 @@ FAULTS = (
         "too dark near a lamp",
         "there is no 1 in the scene's formula",
         attenuation=_one_plus,
+    ),
+    _light(
+        "attenuation-over-4-pi",
+        _FEATURES,
+        "α = 1/(4*π*d*d);",
+        _ALPHA,
+        "lamps that fade with the square are 12 times too dark",
+        "the light's colour is what arrives at distance 1, not the lamp's power",
+        attenuation=_over_sphere,
+    ),
+    _light(
+        "light-vector-over-its-square",
+        _DISTANCE,
+        "i = (k - p)/dot(k - p, k - p);",
+        _I,
+        "light fades although the scene asks for none",
+        "divide by the length, the root of the dot product",
+        light_vector=_over_square,
     ),
     _light(
         "cosine-not-clamped",
@@ -242,6 +265,15 @@ FAULTS = (
         "the dark side is lit",
         "light behind the surface gives nothing",
         lambert=_absolute,
+    ),
+    _light(
+        "cosine-without-z",
+        _LAMBERT,
+        "cosθ = max(i.x*n.x + i.y*n.y, 0);",
+        _COS,
+        "what faces the eye is dark",
+        "the inner product of three dimensions has three terms",
+        lambert=lambda i, n: clamp0(i.x * n.x + i.y * n.y),
     ),
     _light(
         "cosine-half",

@@ -89,6 +89,8 @@ def _asked(scene: Scene, entry: str) -> bool:
         return bool(scene.lights)
     if entry in ("blocks", "shaded_light"):
         return "shadow" in features
+    if entry == "view_vector":
+        return bool(scene.lights) and bool(features & {"reflect", "refract"})
     if entry in ("refract", "mirror", "mix"):
         return bool(features & {"reflect", "refract"})
     return "fresnel" in features if entry == "fresnel" else True

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from oracles.faults.fault import Fault, instead
+from reference_tracer.formulas.plane import plane_hit
 from reference_tracer.formulas.sphere import sphere_distances, sphere_hit
 from reference_tracer.methods.spheres import Roots
-from reference_tracer.numbers import Condition, Number, at_least, less, select, sqrt0
-from reference_tracer.vector import Vec, dot
+from reference_tracer.numbers import Condition, Number, at_least, clamp0, less, select, sqrt0
+from reference_tracer.vector import Vec, dot, unit
 
 
 def _far_root(b: Vec, bv: Any, v: Vec, r: Any) -> Roots:
@@ -29,6 +30,11 @@ def _roots_of(D: Any, bv: Any, scale: float = 1.0) -> Roots:
 def _size_of_d(b: Vec, bv: Any, v: Vec, r: Any) -> Roots:
     _, _, D = sphere_distances(b, bv, v, r)
     return _roots_of(select(less(D, 0.0), -D, D), bv)
+
+
+def _clamped_d(b: Vec, bv: Any, v: Vec, r: Any) -> Roots:
+    _, _, D = sphere_distances(b, bv, v, r)
+    return _roots_of(clamp0(D), bv)
 
 
 def _r_for_r2(b: Vec, bv: Any, v: Vec, r: Any) -> Roots:
@@ -87,6 +93,36 @@ def _acne(distances: Any, o: Vec, v: Vec, c: Vec, r: Any, starts_here: Any, star
     return sphere_hit(distances, o, v, c, r, starts_here & less(r, 0.0), start)
 
 
+def _into_the_surface(
+    distances: Any, o: Vec, v: Vec, c: Vec, r: Any, starts_here: Any, start: Any
+) -> tuple[Number, Condition]:
+    """The start moved against where the ray goes: inward where it leaves, outward where it enters."""
+    outward = dot(v, o - c)
+    return _moved(select(less(0.0, outward), -_STEP, _STEP), distances, o, v, c, r, starts_here, start)
+
+
+def _always_outward(
+    distances: Any, o: Vec, v: Vec, c: Vec, r: Any, starts_here: Any, start: Any
+) -> tuple[Number, Condition]:
+    return _moved(_STEP, distances, o, v, c, r, starts_here, start)
+
+
+def _moved(
+    step: Any, distances: Any, o: Vec, v: Vec, c: Vec, r: Any, starts_here: Any, start: Any
+) -> tuple[Number, Condition]:
+    """The ball as a ray meets it whose start was moved off it by `step` along the normal; others as they are."""
+    along = (o - c) * select(starts_here, step / r, 0.0)
+    return sphere_hit(distances, o + along, v, c, r, starts_here & less(r, 0.0), start)
+
+
+def _plane_into(o: Vec, v: Vec, normal: Vec, offset: Any, elsewhere: Any, start: Any, again: Any = 0.0) -> Any:
+    """A ray that starts on the plane, moved to its other side, meets it at once."""
+    root, meets = plane_hit(o, v, normal, offset, elsewhere, start, again)
+    slope = dot(unit(normal), v)
+    at_once = _STEP / select(less(slope, 0.0), -slope, select(less(0.0, slope), slope, 1.0))
+    return select(elsewhere, root, at_once), select(elsewhere, meets, less(0.0, at_once))
+
+
 def _never_again(
     distances: Any, o: Vec, v: Vec, c: Vec, r: Any, starts_here: Any, start: Any
 ) -> tuple[Number, Condition]:
@@ -106,6 +142,9 @@ def _first_found(distance: Any, best: Any, order: Any, best_order: Any) -> Condi
     return less(distance, distance)
 
 
+_STEP = 1e-3
+"""The offset of a start, in lengths of the scene."""
+
 _LAMBDA = "λ = -dot(b, v) - sqrt(D);"
 _D = "D = bv*bv - (dot(b, b) - r*r);"
 _SMALLEST = "λ = λ1 > 0 ? λ1 : λ2;"
@@ -122,8 +161,9 @@ def _root(name: str, wrong: str, right: str, seen: str, mend: str, distances: An
     return Fault(name, "sphere", f'L11 "{_SPHERE}"', wrong, right, seen, mend, rules)
 
 
-def _hit(name: str, slide: str, wrong: str, right: str, seen: str, mend: str, hit: Any) -> Fault:
-    return Fault(name, "sphere", f'L11 "{slide}"', wrong, right, seen, mend, instead(name, sphere_hit=hit))
+def _hit(name: str, slide: str, wrong: str, right: str, seen: str, mend: str, hit: Any, **entries: Any) -> Fault:
+    rules = instead(name, sphere_hit=hit, **entries)
+    return Fault(name, "sphere", f'L11 "{slide}"', wrong, right, seen, mend, rules)
 
 
 def _order(name: str, slide: str, wrong: str, seen: str, mend: str, nearer: Any) -> Fault:
@@ -154,6 +194,14 @@ FAULTS = (
         "every ray before a ball meets it",
         "D < 0 says that the ray passes by",
         _size_of_d,
+    ),
+    _root(
+        "discriminant-cut-at-0",
+        "λ = -dot(b, v) - sqrt(max(D, 0));",
+        _D + " if (D < 0) no hit;",
+        "every ray before a ball meets it",
+        "D < 0 says that the ray passes by; cutting it at 0 says that it touches",
+        _clamped_d,
     ),
     _root(
         "radius-not-squared",
@@ -254,6 +302,25 @@ FAULTS = (
         "specks of shadow and colour on balls (acne)",
         "a ray that starts on a ball has the roots 0 and -2b∘v there: do not ask the rounded one",
         _acne,
+    ),
+    _hit(
+        "start-moved-into-the-surface",
+        "Modified FindRGB",
+        "o = p - 0.001*n;  // leaving",
+        "o = p + 0.001*n;  // to the side where the ray goes",
+        "everything is in its own shadow, mirrors show themselves",
+        "an offset goes to the side where the ray goes, or there is none",
+        _into_the_surface,
+        plane_hit=_plane_into,
+    ),
+    _hit(
+        "start-always-moved-outward",
+        "Get Refraction Vector",
+        "o = p + 0.001*n;  // entering too",
+        "o = p - 0.001*n;  // for a ray that enters",
+        "light never gets into glass: the refracted ray meets the outside again",
+        "an offset goes to the side where the ray goes",
+        _always_outward,
     ),
     _hit(
         "never-meets-its-own-ball",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from oracles.faults.fault import Fate, Fault, instead
+from oracles.faults.fault import Fault, instead
 from reference_tracer.formulas import shading
 from reference_tracer.numbers import less, select
 from reference_tracer.vector import Vec
@@ -53,12 +53,8 @@ _SUM = "c = c + α*light*(diffuse*cosθ + specular*gloss);"
 _BLOCKED = "if (λ > 0 && λ < d) hidden;"
 
 
-def _light(
-    name: str, slide: str, wrong: str, right: str, seen: str, mend: str, survives: str = "", **entries: Any
-) -> Fault:
-    rules = instead(name, **entries)
-    fate: Fate = "survives" if survives else "killed"
-    return Fault(name, "light", f'L11 "{slide}"', wrong, right, seen, mend, rules, None, fate, survives)
+def _light(name: str, slide: str, wrong: str, right: str, seen: str, mend: str, **entries: Any) -> Fault:
+    return Fault(name, "light", f'L11 "{slide}"', wrong, right, seen, mend, instead(name, **entries))
 
 
 def _shadow(name: str, wrong: str, right: str, seen: str, mend: str, **entries: Any) -> Fault:
@@ -118,7 +114,6 @@ FAULTS = (
         "clamp once, when the byte is written",
         "mirrors and bright lamps lose light",
         "clamp the picture, never a sum",
-        survives="No light of the catalogue gives a surface more than 1.",
         direct_light=_cut_at_one,
     ),
     _light(
@@ -138,6 +133,15 @@ FAULTS = (
         "shadows are black",
         "the sum begins with ambient",
         ambient_light=lambda ambient: ambient * 0.0,
+    ),
+    _light(
+        "ambient-of-its-own",
+        _AMBIENT,
+        "c = ambient + 0.1;",
+        "c = ambient;",
+        "nothing is black",
+        "the scene says all the light there is: the material's ambient",
+        ambient_light=lambda ambient: Vec(*(part + 0.1 for part in ambient)),
     ),
     _light(
         "ambient-for-each-light",

@@ -40,6 +40,11 @@ def _slope_left_out(o: Vec, v: Vec, normal: Vec, offset: Any, elsewhere: Any, st
     return root, elsewhere & less(0.0, root) & less(dot(normal, v), 0.0)
 
 
+def _floor_only(o: Vec, v: Vec, normal: Vec, offset: Any, elsewhere: Any, start: Any, again: Any = 0.0) -> Hit:
+    up = Vec(0.0 * normal.x, normal.y, 0.0 * normal.z)
+    return plane_hit(o, v, up, offset, elsewhere, start, again)
+
+
 def _parallel_too_soon(o: Vec, v: Vec, normal: Vec, offset: Any, elsewhere: Any, start: Any, again: Any = 0.0) -> Hit:
     root, meets = plane_hit(o, v, normal, offset, elsewhere, start, again)
     slope = dot(normal, v)
@@ -87,6 +92,15 @@ FAULTS = (
         sphere_normal=lambda p, c: p - c,
     ),
     _entry(
+        "normal-over-its-square",
+        _BALL,
+        "n = (p - c)/dot(p - c, p - c);",
+        _N,
+        "balls of radius 1 are right, small ones bright, large ones dark",
+        "divide by the length, the root of the dot product",
+        sphere_normal=lambda p, c: (p - c) / dot(p - c, p - c),
+    ),
+    _entry(
         "normal-inward",
         _BALL,
         "n = unit(c - p);",
@@ -130,6 +144,15 @@ FAULTS = (
         "walls are lit as floors",
         "use the plane's own normal",
         plane_normal=lambda normal: Vec(0.0 * normal.x, 0.0 * normal.y + 1.0, 0.0 * normal.z),
+    ),
+    _entry(
+        "every-plane-is-met-as-a-floor",
+        _PLANE,
+        "λ = (offset/normal.y - o.y)/v.y;",
+        _ROOT,
+        "walls are missing",
+        "use all three components of the normal",
+        plane_hit=_floor_only,
     ),
     _entry(
         "plane-from-one-side",

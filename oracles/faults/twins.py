@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from oracles.faults.fault import Twin, instead
 from oracles.faults.files import linear
-from oracles.faults.numbers import above
 from oracles.images import Picture
-from reference_tracer.formulas import optics
+from reference_tracer.formulas import optics, plane, sphere
 from reference_tracer.formulas.display import encode
 from reference_tracer.methods import REFRACT, SPHERE
-from reference_tracer.numbers import Number, clamp0, less, power, select, sqrt0
-from reference_tracer.vector import Vec, dot, unit
+from reference_tracer.numbers import Condition, Number, at_least, clamp0, less, power, select, sqrt0
+from reference_tracer.vector import Vec, dot, select_vec, unit
 from scenes.model import Scene
 
 
@@ -35,6 +34,17 @@ def _folded(i: Vec, n: Vec) -> Vec:
     return found
 
 
+def _at_minus_n(i: Vec, n: Vec) -> Vec:
+    return optics.reflect(i, -n)
+
+
+def _as_it_comes(v: Vec, n: Vec, leaving: Any, index: Any) -> tuple[Vec, Condition]:
+    p = n * -dot(v, n) + v
+    s = select_vec(leaving, p * index, p / index)
+    sin2 = dot(s, s)
+    return s - n * sqrt0(1.0 - sin2), at_least(sin2, 1.0)
+
+
 def _weighed_first(colour: Vec, factor: Any, diffuse: Vec, cosine: Any, specular: Vec, gloss: Any) -> Vec:
     light = colour * factor
     share: Vec = diffuse * light * cosine + specular * light * gloss
@@ -48,6 +58,18 @@ def _mixed_backwards(local: Vec, reflect: Vec, reflected: Vec, transmit: Vec, tr
 def _inverse_first(distance: Any, inverse: Any, square: Any) -> Number:
     one = 1.0 / select(less(0.0, distance), distance, 1.0)
     return select(square, one * one, select(inverse, one, 1.0))
+
+
+def _from(least: float) -> dict[str, Any]:
+    """Both hits by a tracer that looks for roots beyond this distance only."""
+
+    def ball(distances: Any, o: Vec, v: Vec, c: Vec, r: Any, here: Any, start: Any) -> tuple[Number, Condition]:
+        return sphere.sphere_hit(distances, o, v, c, r, here, start + least)
+
+    def flat(o: Vec, v: Vec, n: Vec, d: Any, elsewhere: Any, start: Any, again: Any = plane.NEVER) -> Any:
+        return plane.plane_hit(o, v, n, d, elsewhere, start + least, again)
+
+    return {"sphere_hit": ball, "plane_hit": flat}
 
 
 def _half_file(pixels: NDArray[Any], scene: Scene) -> Picture:
@@ -81,12 +103,23 @@ TWINS = (
     Twin("weighed-first", "the light multiplied into each term", instead("weighed-first", direct_light=_weighed_first)),
     Twin("mixed-backwards", "the branches added in the other order", instead("mixed-backwards", mix=_mixed_backwards)),
     Twin("inverse-first", "1/d formed first, then squared", instead("inverse-first", attenuation=_inverse_first)),
+    Twin("mirrored-at-minus-n", "reflection at the other normal", instead("mirrored-at-minus-n", mirror=_at_minus_n)),
+    Twin(
+        "refracted-as-it-comes",
+        "a refracted ray not made unit: s - cosθ2 n has length 1",
+        instead("refracted-as-it-comes", refract=_as_it_comes),
+    ),
     Twin(
         "unit-again",
         "reflected rays made unit again",
         instead("unit-again", mirror=lambda i, n: unit(optics.reflect(i, n))),
     ),
-    Twin("least-distance-1e-4", "no hit before 1e-4", instead("least-distance-1e-4", **above(1e-4))),
+    Twin("least-distance-1e-4", "no hit before 1e-4", instead("least-distance-1e-4", **_from(1e-4))),
+    Twin(
+        "least-distance-2e-3",
+        "no hit before 0.002, as a float32 tracer with one least distance for all scenes needs it",
+        instead("least-distance-2e-3", **_from(2e-3)),
+    ),
     Twin("half-float-file", "written as half floats", picture=_half_file),
     Twin("byte-file", "written as 8-bit codes", picture=_codes),
     Twin("objects-backwards", "objects in the other order", scene=_backwards),

@@ -21,11 +21,11 @@ SAFETY = 2.0
 """On the maxima that were measured for the lecture's formula (docs/laws.md)."""
 
 EXTENT = 6.0
-"""No scene of the catalogue reaches farther from its origin."""
+"""No scene of the catalogue in which rays start on surfaces reaches farther from its origin."""
 
 NEAR = EXTENT * np.sqrt(8.0 * 2.0**-24)
 """Hits nearer than this may be skipped: a tracer has one least distance for all scenes, and L·sqrt(8u) is
-lawful in the largest of the catalogue (docs/tolerance.md, "Where a ray starts")."""
+lawful in the largest of these (docs/tolerance.md, "Where a ray starts")."""
 
 REGIMES = ("ordinary", "far", "grazing", "huge floor", "far from the origin", "inside")
 

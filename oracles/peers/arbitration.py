@@ -30,7 +30,7 @@ class Party:
     picture: Picture | None
     seconds: float
     message: str = ""
-    habit: Habit | None = None
+    habits: tuple[Habit, ...] = ()
 
 
 def arbitrate(scene: Scene, parties: Sequence[Party], lanes: str) -> SceneStandings:
@@ -63,8 +63,12 @@ def _standing(
     reach = expected.tolerance + np.abs(expected.pixels - proved.value) + proved.bound
     outside = compare(party.picture, replace(expected, pixels=proved.value, tolerance=reach)).outside
     accounted = np.zeros_like(outside)
-    if party.habit is not None:
-        accounted = explained(scene, party.picture, outside, party.habit, party.precision, lanes)
+    reasons: list[str] = []
+    for habit in party.habits:
+        more = explained(scene, party.picture, outside & ~accounted, habit, party.precision, lanes)
+        accounted = accounted | more
+        if more.any():
+            reasons.append(habit.reason)
     # An upper bound of the error: our own float64 picture is the middle of the certified one
     off = (np.abs(party.picture.values - proved.value) + proved.bound).max(axis=-1)
     error = np.where(proved.decided, off, 0.0)
@@ -77,7 +81,7 @@ def _standing(
             "at": _place(error),
             "outside": int(np.count_nonzero(outside)),
             "explained": int(np.count_nonzero(accounted)),
-            "reason": party.habit.reason if party.habit and accounted.any() else "",
+            "reason": ", ".join(reasons),
         }
     ), outside
 

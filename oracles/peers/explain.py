@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from oracles.faults.fault import instead
+from oracles.faults.numbers import below
 from oracles.images.picture import Picture
 from oracles.peers import conventions
 from oracles.peers.offset import OffsetTracer
@@ -34,6 +36,12 @@ OFFSET = Habit(
 )
 TOTAL_REFLECTION = Habit(
     "total reflection goes on as a mirrored ray of weight 1", conventions.TotalReflectionTracer, conventions.tolerance
+)
+
+FAR = Habit(
+    "nothing is met beyond 1e7",
+    lambda scene: PlainTracer(scene, instead("nothing is met beyond 1e7", **below(1e7))),
+    lambda scene, precision, lanes: truth(scene, precision, lanes).tolerance,
 )
 
 

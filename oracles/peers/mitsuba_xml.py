@@ -80,6 +80,8 @@ def max_depth(scene: Scene) -> int:
 
 def _lines(scene: Scene, by_chance: bool) -> Iterator[str]:
     depth = max_depth(scene)
+    if any(_eye_inside(scene, thing) for thing in scene.objects if kind(scene, thing.material) == "glass"):
+        raise CannotSayError("an eye inside glass, where radiance is index² times the air's and the lecture's is not")
     yield f"<!-- {scene.name}; mitsuba -m scalar_rgb {scene.name}.xml -->"
     yield '<scene version="3.0.0">'
     yield f'  <integrator type="path"><integer name="max_depth" value="{depth}"/>'
@@ -92,6 +94,13 @@ def _lines(scene: Scene, by_chance: bool) -> Iterator[str]:
     for k, thing in enumerate(scene.objects):
         yield _shape(scene, k, thing)
     yield "</scene>"
+
+
+def _eye_inside(scene: Scene, thing: Object) -> bool:
+    eye = scene.camera.eye
+    if isinstance(thing, Sphere):
+        return math.dist(eye, thing.center) < thing.radius
+    return sum(a * b for a, b in zip(thing.normal, eye, strict=True)) < thing.offset
 
 
 def _number(value: float) -> str:

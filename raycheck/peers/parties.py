@@ -12,7 +12,7 @@ import numpy as np
 
 from oracles.images import Picture
 from oracles.peers.arbitration import Party
-from oracles.peers.explain import OFFSET, TOTAL_REFLECTION, Habit
+from oracles.peers.explain import FAR, OFFSET, TOTAL_REFLECTION, Habit
 from raycheck.subjects import Attempt, Subject, attach
 from reference_tracer import llvm
 from reference_tracer.lanes import render as lanes
@@ -26,13 +26,13 @@ class Peer:
     name: str
     precision: str
     render: Callable[[Scene], Attempt]
-    habit: Habit | None = None
+    habits: tuple[Habit, ...] = ()
 
     def party(self, scene: Scene) -> Party:
         """Its version of the scene."""
         attempt = self.render(scene)
         told = f"{attempt.word}: {attempt.message}" if attempt.word else ""
-        return Party(self.name, self.precision, attempt.picture, attempt.seconds, told, self.habit)
+        return Party(self.name, self.precision, attempt.picture, attempt.seconds, told, self.habits)
 
 
 def peers() -> Iterator[Peer]:
@@ -46,7 +46,7 @@ def peers() -> Iterator[Peer]:
             yield _other("builtin:mitsuba/llvm_ad_rgb", OFFSET)
         yield _other("builtin:mitsuba/scalar_rgb/stock", OFFSET)
     if shutil.which("povray"):
-        yield _other("builtin:povray", TOTAL_REFLECTION)
+        yield _other("builtin:povray", TOTAL_REFLECTION, FAR)
 
 
 def _ours(kind: str, bits: int) -> Callable[[Scene], Attempt]:
@@ -58,7 +58,7 @@ def _ours(kind: str, bits: int) -> Callable[[Scene], Attempt]:
     return render
 
 
-def _other(spec: str, habit: Habit) -> Peer:
+def _other(spec: str, *habits: Habit) -> Peer:
     subject: Subject = attach(spec)
     subject.prepare()
-    return Peer(subject.name, subject.precision, lambda scene: subject.render(scene, 0), habit)
+    return Peer(subject.name, subject.precision, lambda scene: subject.render(scene, 0), habits)

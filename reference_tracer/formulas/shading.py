@@ -30,6 +30,14 @@ def attenuation(distance: Number, is_inverse: Condition, is_inverse_square: Cond
     return 1.0 / select(less(0.0, divisor), divisor, 1.0)
 
 
+def view_vector(v: Vec, p: Vec, eye: Vec) -> Vec:
+    """Unit direction in which a highlight at p is looked at: the ray's own, in mirrors and glass too.
+
+    L11 "Phong Effect" has one eye; only for rays of generation 0 is it the camera's.
+    """
+    return v
+
+
 def lambert(i: Vec, n: Vec) -> Number:
     """cosθ = i∘n, 0 for a light behind the surface. L11 "Lambertian Reflection Model"."""
     return clamp0(dot(i, n))

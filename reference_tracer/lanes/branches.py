@@ -53,7 +53,7 @@ def _all_branches(front: Wavefront, rays: Rays, taken: Lanes, colour: Vec, gener
         colour = _widened(colour, lanes, brought)
         np.bitwise_or.at(doubts, lanes, more)
     astray = np.flatnonzero((reach == INFINITY) & (taken >= 0))
-    return _widened(colour, astray, front.rules.seen(front.background())), doubts
+    return _widened(colour, astray, front.rules.seen(front.stray(generation))), doubts
 
 
 def _candidates(front: Wavefront, rays: Rays, taken: Lanes) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -94,7 +94,7 @@ class Wavefront:
     def follow(self, rays: Rays, nearest: Nearest, doubts: Any, generation: int) -> tuple[Vec, Any]:
         """Colours of rays whose nearest object is known."""
         # Shade; one kernel serves every generation of every scene
-        surface, hit, local, doubts = self.arrive(rays, nearest, doubts)
+        surface, hit, local, doubts = self.arrive(rays, nearest, doubts, generation)
         _, total = self._refract(rays.v, surface)
         reflect, transmit = self._weights(rays.v, surface, total)
         reflects = hit & self.numbers.possible(reflect)
@@ -129,7 +129,7 @@ class Wavefront:
         self.backend.evaluate((result, passed_on))
         return result, passed_on
 
-    def arrive(self, rays: Rays, nearest: Nearest, doubts: Any) -> tuple[Surface, Array, Vec, Any]:
+    def arrive(self, rays: Rays, nearest: Nearest, doubts: Any, generation: int) -> tuple[Surface, Array, Vec, Any]:
         """The nearest surface of each ray, whether there is one, and its local colour."""
         hit = nearest.row >= 0
         row = select(hit, nearest.row, rays.start - rays.start)
@@ -139,7 +139,7 @@ class Wavefront:
         n, leaving = self.rules.face(rays.v, normal)
         surface = Surface(p, n, leaving, row)
         lit, doubts = self.local_colour(rays.v, surface, hit, doubts)
-        return surface, hit, select_vec(hit, lit, self.background()), doubts
+        return surface, hit, select_vec(hit, lit, self.stray(generation)), doubts
 
     def over_objects(self, rays: Rays, step: Callable[[Any, Any, Any, Any], Any], state: Any) -> Any:
         """State = step(state, distance, meets, row) over all objects, asked of these rays."""
@@ -208,6 +208,7 @@ class Wavefront:
         ambient = self._vec("ambient", row)
         diffuse, specular = self._vec("diffuse", row), self._vec("specular", row)
         shininess = self._integer("shininess", row)
+        v = rules.view_vector(v, surface.p, self._view("eye"))
 
         def step(k: Any, state: Any) -> Any:
             colour, doubts = state
@@ -278,8 +279,12 @@ class Wavefront:
         return self.backend.gather(self.tables.integers[name], row)
 
     def background(self) -> Vec:
-        """The colour of a ray that meets nothing."""
+        """The scene's background."""
         return self._view("background")
+
+    def stray(self, generation: int) -> Vec:
+        """What a ray of that generation brings that meets nothing."""
+        return self.rules.stray(self.background(), generation)
 
     def _view(self, name: str) -> Vec:
         return self._vec(name, 0)

@@ -12,6 +12,7 @@ import pytest
 from oracles.faults import FAULTS, TWINS, Fault, Twin, fault
 from oracles.faults.power import Bench, kills, touches
 from oracles.faults.words import explained, listed, page
+from oracles.gates import GATES
 from reference_tracer.lanes.numpy_backend import NumPyBackend
 from reference_tracer.lanes.render import render
 from scenes.catalogue import ladder, rung
@@ -34,6 +35,11 @@ def benches() -> tuple[Bench, ...]:
 @pytest.mark.parametrize("entry", NOTICED, ids=name_of)
 def test_a_scene_of_the_catalogue_notices_the_fault(entry: Fault) -> None:
     assert next(kills(benches(), entry), None)
+
+
+def test_every_scene_of_the_catalogue_notices_a_fault() -> None:
+    idle = [bench.scene.name for bench in benches() if not any(bench.kill(entry) for entry in NOTICED)]
+    assert idle == []
 
 
 @pytest.mark.parametrize("entry", EXCUSED, ids=name_of)
@@ -90,8 +96,20 @@ def test_an_unknown_name_is_told_its_neighbours() -> None:
         fault("upsidedown")
 
 
-def test_the_page_of_the_documents_is_the_dictionarys() -> None:
-    assert (ROOT / "docs" / "faults.md").read_text("utf-8") == page()
+def test_the_page_of_the_documents_begins_with_the_dictionary() -> None:
+    text = (ROOT / "docs" / "faults.md").read_text("utf-8")
+    assert text.startswith(page())
+    assert set(re.findall(r"^## (.+)$", text[len(page()) :], re.MULTILINE)) == {"Not in it", "Before other gates"}
+
+
+def test_the_gates_of_the_documents_miss_faults_that_there_are() -> None:
+    text = (ROOT / "docs" / "faults.md").read_text("utf-8")[len(page()) :]
+    rows = re.findall(r"^\| [^|]+ \| (\d+): ([^|]+) \| (\d+)", text, re.MULTILINE)
+    assert len(rows) == len(GATES)
+    for count, names, _ in rows:
+        missed = names.strip().split(", ")
+        assert len(missed) == int(count)
+        assert set(missed) <= {entry.name for entry in NOTICED}
 
 
 def test_list_and_entry_name_every_fault() -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from oracles.images import Picture
 from oracles.peers.arbitration import Party, arbitrate
 from oracles.peers.conventions import TotalReflectionTracer
-from oracles.peers.explain import OFFSET, TOTAL_REFLECTION, Habit
+from oracles.peers.explain import FAR, OFFSET, TOTAL_REFLECTION, Habit
 from oracles.peers.offset import RAY_EPSILON, OffsetTracer
 from reference_tracer.plain import PlainTracer, render
 from reference_tracer.vector import Vec
@@ -59,11 +59,17 @@ def test_where_nothing_is_totally_reflected_that_tracer_is_the_plain_one() -> No
 
 
 @pytest.mark.parametrize(
-    ("name", "habit"), [("inside-glass", OFFSET), ("inside-glass", TOTAL_REFLECTION), ("air-bubble", TOTAL_REFLECTION)]
+    ("name", "habit"),
+    [
+        ("inside-glass", OFFSET),
+        ("inside-glass", TOTAL_REFLECTION),
+        ("air-bubble", TOTAL_REFLECTION),
+        ("far-ball", FAR),
+    ],
 )
 def test_a_habit_explains_its_own_pixels(name: str, habit: Habit) -> None:
     scene = rung(name).scene().resized(48, 36)
-    party = Party("peer", "float32", picture_of(scene, habit.tracer(scene)), 1.0, "", habit)
+    party = Party("peer", "float32", picture_of(scene, habit.tracer(scene)), 1.0, "", (habit,))
     case = arbitrate(scene, [party], "numpy")
     assert case.standings[0].outside > 0
     assert case.unexplained == 0
@@ -74,7 +80,7 @@ def test_a_habit_excuses_nothing_else() -> None:
     scene = rung("inside-glass").scene().resized(48, 36)
     picture = picture_of(scene, OffsetTracer(scene))
     picture.values[3, 4] += 0.01
-    case = arbitrate(scene, [Party("peer", "float32", picture, 1.0, "", OFFSET)], "numpy")
+    case = arbitrate(scene, [Party("peer", "float32", picture, 1.0, "", (OFFSET,))], "numpy")
     assert case.unexplained == 1
 
 

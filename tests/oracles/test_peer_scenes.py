@@ -33,6 +33,18 @@ def test_a_scene_of_the_lectures_own_model_is_refused_with_a_reason(name: str) -
         to_mitsuba(rung(name).scene())
 
 
+@pytest.mark.parametrize("name", ["fresnel-window", "inside-glass"])
+def test_an_eye_inside_glass_is_refused_since_radiance_differs_there(name: str) -> None:
+    scene = rung(name).scene()
+    white = {"ambient": (0.0, 0.0, 0.0), "reflect": (1.0, 1.0, 1.0), "transmit": (1.0, 1.0, 1.0)}
+    materials = {
+        key: m.model_copy(update=white if any(m.transmit) else {"diffuse": (0.0, 0.0, 0.0)})
+        for key, m in scene.materials.items()
+    }
+    with pytest.raises(CannotSayError, match="inside glass"):
+        to_mitsuba(scene.model_copy(update={"fresnel": True, "materials": materials}))
+
+
 def test_lights_are_pi_times_as_strong_since_mitsubas_diffuse_divides_by_pi() -> None:
     scene = rung("physical-lights").scene()
     root = ET.fromstring(to_mitsuba(scene))  # noqa: S314

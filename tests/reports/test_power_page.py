@@ -11,16 +11,17 @@ import pytest
 
 from raycheck.machine import machine
 from reports import power
-from reports.power import FaultPower, Power, SceneKill, TwinPower
+from reports.power import FaultPower, LawKill, Power, SceneKill, TwinPower
 
 KILL = SceneKill(scene="a", pixels=3, excess=7.5)
+BROKEN = LawKill(law="reflect/angle", excess=None)
 BLACK = SceneKill(scene="b", pixels=1, excess=None)
 
 
 @pytest.fixture
 def found() -> Power:
-    noticed = FaultPower(name="noticed", group="light", fate="killed", reason="", kills=(KILL, BLACK))
-    excused = FaultPower(name="excused", group="light", fate="survives", reason="<b>too small</b>", kills=())
+    noticed = FaultPower(name="noticed", group="light", fate="killed", reason="", kills=(KILL, BLACK), laws=(BROKEN,))
+    excused = FaultPower(name="excused", group="light", fate="survives", reason="<b>too small</b>", kills=(), laws=())
     return Power(
         suite="0",
         machine=machine(),
@@ -29,14 +30,17 @@ def found() -> Power:
         seconds=1.0,
         size="48x36",
         scenes=("a", "b"),
+        laws=("reflect/angle",),
         faults=(noticed, excused),
-        twins=(TwinPower(name="twin", how="in another order", kills=()),),
+        twins=(TwinPower(name="twin", how="in another order", kills=(), laws=()),),
     )
 
 
 def test_noticed_and_excused_faults_and_untouched_twins_hold(found: Power) -> None:
     assert found.holds
-    assert list(power.lines(found))[-1].startswith("1 of 2 faults are noticed on 2 scenes (48x36); 0 of 1 correct")
+    assert list(power.lines(found))[-1].startswith(
+        "1 of 2 faults are noticed on 2 scenes (48x36), 1 by 1 laws; 0 of 1 correct"
+    )
 
 
 def test_a_fault_that_nothing_notices_does_not_hold(found: Power) -> None:
@@ -55,6 +59,25 @@ def test_a_failed_twin_does_not_hold(found: Power) -> None:
     wrong = found.model_copy(update={"twins": (found.twins[0].model_copy(update={"kills": (KILL,)}),)})
     assert not wrong.holds
     assert "WRONGED: a fails twin, which is correct (in another order)" in list(power.lines(wrong))
+
+
+def test_a_twin_that_a_law_fails_does_not_hold(found: Power) -> None:
+    wrong = found.model_copy(update={"twins": (found.twins[0].model_copy(update={"laws": (BROKEN,)}),)})
+    assert not wrong.holds
+    assert "WRONGED: reflect/angle fails twin, which is correct (in another order)" in list(power.lines(wrong))
+
+
+def test_an_equivalent_fault_that_a_law_notices_does_not_hold(found: Power) -> None:
+    refuted = found.faults[0].model_copy(update={"fate": "equivalent", "kills": ()})
+    wrong = found.model_copy(update={"faults": (refuted,), "scenes": ()})
+    assert "REFUTED: reflect/angle notices noticed, said to be equivalent" in list(power.lines(wrong))
+    assert not wrong.holds
+
+
+def test_a_law_that_notices_nothing_does_not_hold(found: Power) -> None:
+    wrong = found.model_copy(update={"laws": ("reflect/angle", "reflect/unit")})
+    assert not wrong.holds
+    assert "IDLE: reflect/unit notices no fault" in list(power.lines(wrong))
 
 
 def test_a_scene_that_notices_nothing_does_not_hold(found: Power) -> None:
