@@ -26,8 +26,8 @@ from scenes.catalogue import ladder
 
 NAMES = (
     "depth-order", "inside-sphere", "ambient-diffuse", "point-light", "two-lights", "phong-10", "attenuation-inverse",
-    "plane-both-sides", "shadow-hard", "shadow-behind-light", "mirror-imperfect", "mirror-perfect", "facing-mirrors-3", "glass-sphere",
-    "inside-glass", "off-centre-camera", "lecture-final", "glass-fresnel",
+    "plane-both-sides", "shadow-hard", "shadow-behind-light", "mirror-imperfect", "mirror-perfect", "facing-mirrors-3",
+    "glass-sphere", "inside-glass", "off-centre-camera", "lecture-final", "glass-fresnel",
 )  # fmt: skip
 """For every mutant there is one that it changes."""
 SIZE = (24, 18)
@@ -70,7 +70,7 @@ def _squared(*asked: Any) -> tuple[Vec, Vec]:
     return reflect * reflect, transmit
 
 
-STRANGE = {
+STRANGE: dict[str, dict[str, Any]] = {
     "diffuse": {"lambert": _diffuse},
     "specular": {"phong": _specular},
     "ambient": {"ambient_light": _grey},
