@@ -7,10 +7,12 @@ are its mutants. The tracers are those of benchmarks/diagnosis.py.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
-from diagnosis import exhibits
 
 from oracles.diagnosis.evidence import Evidence
 from oracles.diagnosis.located import located, term_of
@@ -18,6 +20,12 @@ from oracles.faults import FAULTS, Fault
 from raycheck.machine import machine
 from scenes.catalogue import ladder
 from scenes.model import Scene
+
+_SPEC = importlib.util.spec_from_file_location("diagnosis", Path(__file__).parent / "diagnosis.py")
+assert _SPEC
+assert _SPEC.loader
+diagnosis: Any = importlib.util.module_from_spec(_SPEC)
+_SPEC.loader.exec_module(diagnosis)
 
 
 def main() -> None:
@@ -37,7 +45,7 @@ def hidden(scenes: Sequence[Scene], faults: Sequence[Fault]) -> None:
     """A line for each fault that is sought in a wrong term."""
     itself = formula = 0
     for fault in faults:
-        evidence = Evidence(exhibits(scenes, (fault,)))
+        evidence = Evidence(diagnosis.exhibits(scenes, (fault,)))
         term = term_of(fault).name
         by_itself = located(evidence, [f for f in FAULTS if f is not fault])[0]
         by_formula = located(evidence, [f for f in FAULTS if not f.entries & fault.entries])[0]
