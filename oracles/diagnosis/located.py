@@ -28,8 +28,8 @@ PLAIN = 1 / 4
 """What the likest mutant of a term counts beside its likest probe.
 
 Of some formulas twenty mistakes are known, of others two; so that a term is not likelier for being better known, its
-mutants, of which all have about as many, have a say. How large a one was found by hiding each known fault in turn:
-benchmarks/located.py.
+mutants, of which all have about as many, have a say. How large a one was found by hiding each known fault in turn, as
+benchmarks/located.py does.
 """
 
 Change = tuple[NDArray[np.float64], NDArray[np.bool_]]
