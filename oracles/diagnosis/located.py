@@ -1,26 +1,39 @@
 """Where an error lives that no known fault explains: the term of the shading sum, and where it starts.
 
 Every fault of the dictionary is a probe of the formula that it changes: it tells which pixels can depend on that
-formula, and in which colour. The term whose faults change the same pixels as are wrong, of the same pictures, in the
-same direction of colour, is where the error is sought: fault localisation by mutants (Papadakis, Le Traon,
-"Metallaxis-FL", Software Testing, Verification and Reliability 25, 2015), with Ochiai's similarity (Abreu et al.,
-TAICPART 2007).
+formula, and in which colour; so is every mutant, for mistakes that are not known. The term whose probes change the
+same pixels as are wrong, of the same pictures, in the same direction of colour, is where the error is sought: fault
+localisation by mutants (Papadakis, Le Traon, "Metallaxis-FL", Software Testing, Verification and Reliability 25,
+2015), with Ochiai's similarity (Abreu et al., TAICPART 2007).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from oracles.diagnosis.evidence import Evidence, Witness
+from oracles.diagnosis.mutants import GROUP, mutants
 from oracles.faults import FAULTS, Fault
 
 SAMPLE = 8
-"""Wrong pictures, and as many right ones, by which a term is located."""
+"""Wrong pictures, and as many right ones, by which all probes are tried."""
+NEAR = 24
+"""Probes that are then tried by all pictures."""
+PLAIN = 1 / 4
+"""What the likest mutant of a term counts beside its likest probe.
+
+Of some formulas twenty mistakes are known, of others two; so that a term is not likelier for being better known, its
+mutants, of which all have about as many, have a say. How large a one was found by hiding each known fault in turn, as
+benchmarks/located.py does.
+"""
+
+Change = tuple[NDArray[np.float64], NDArray[np.bool_]]
+"""How far each pixel is moved, (n, 3), and which pixels are moved out of their bounds."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +102,30 @@ TERMS = (
 
 @dataclass(frozen=True)
 class Place:
-    """A term and how much the error looks like one of its faults, 0 to 1; which one."""
+    """A term and one of its probes: the sum of how alike error and probe are in each picture; wrong pictures; changed.
+
+    like: the known fault or mutant that is the probe.
+    """
 
     term: Term
-    likeness: float
     like: Fault
+    alike: float
+    wrong: int
+    changed: int
+
+    @property
+    def likeness(self) -> float:
+        """How much the error looks like the probe, 0 to 1: Ochiai's similarity of wrong and changed pictures."""
+        return self.alike / sqrt(self.wrong * self.changed) if self.alike else 0.0
+
+    def and_also(self, other: Place) -> Place:
+        """By both of two sets of pictures."""
+        return replace(
+            self,
+            alike=self.alike + other.alike,
+            wrong=self.wrong + other.wrong,
+            changed=self.changed + other.changed,
+        )
 
 
 def term_of(fault: Fault) -> Term:
@@ -101,16 +133,41 @@ def term_of(fault: Fault) -> Term:
     return next((term for term in TERMS if fault.entries & term.entries), TERMS[-1])
 
 
-def located(evidence: Evidence) -> list[Place]:
-    """All terms, the likeliest first."""
-    witnesses = [*_spread(evidence.failing), *_spread(w for w in evidence.witnesses if not w.failing)]
-    readings = [(witness, _errors(witness)) for witness in witnesses]
+def located(evidence: Evidence, known: Sequence[Fault] = FAULTS) -> list[Place]:
+    """All terms, the likeliest first, each by the probe that looks most like the error.
+
+    Every probe, known faults and mutants, is tried by a sample of the pictures; those that look most alike, and the
+    best of each term, then by the others too.
+    """
+    probes = (*known, *mutants(evidence.base))
+    sample = [*_spread(evidence.failing), *_spread(w for w in evidence.witnesses if not w.failing)]
+    others = [witness for witness in evidence.witnesses if witness not in sample]
+    likest = _likest_first(_compared(sample, probes))
+    near = list(dict.fromkeys((*likest[:NEAR], *_best_of_terms(likest), *_best_of_terms(_of_mutants(likest)))))
+    more = _compared(others, [found.like for found in near])
+    found = _likest_first(before.and_also(after) for before, after in zip(near, more, strict=True))
+    by_mutants = {place.term.name: place.likeness for place in _best_of_terms(_of_mutants(found))}
+
+    def likelihood(place: Place) -> float:
+        return (1.0 - PLAIN) * place.likeness + PLAIN * by_mutants.get(place.term.name, 0.0)
+
+    return sorted(_best_of_terms(found), key=likelihood, reverse=True)
+
+
+def _likest_first(places: Iterable[Place]) -> list[Place]:
+    return sorted(places, key=lambda place: place.likeness, reverse=True)
+
+
+def _best_of_terms(ordered: Iterable[Place]) -> list[Place]:
+    """The first of each term."""
     best: dict[str, Place] = {}
-    for fault in FAULTS:
-        place = Place(term_of(fault), _likeness(readings, fault), fault)
-        if place.term.name not in best or place.likeness > best[place.term.name].likeness:
-            best[place.term.name] = place
-    return sorted(best.values(), key=lambda place: place.likeness, reverse=True)
+    for place in ordered:
+        best.setdefault(place.term.name, place)
+    return list(best.values())
+
+
+def _of_mutants(places: Iterable[Place]) -> list[Place]:
+    return [place for place in places if place.like.group == GROUP]
 
 
 def _spread(witnesses: Iterable[Witness]) -> list[Witness]:
@@ -118,26 +175,34 @@ def _spread(witnesses: Iterable[Witness]) -> list[Witness]:
     return [found[k] for k in sorted({round(x) for x in np.linspace(0, len(found) - 1, SAMPLE)})] if found else []
 
 
-def _errors(witness: Witness) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """What is too much in each pixel, (n, 3), and which pixels are outside their bounds."""
+def _compared(witnesses: Sequence[Witness], probes: Sequence[Fault]) -> list[Place]:
+    """What these pictures say of each probe."""
+    errors = [_error(witness) for witness in witnesses]
+    wrong = sum(bool(outside.any()) for _, outside in errors)
+    places = []
+    for probe in probes:
+        seen = [_alike(error, witness.change(probe)) for witness, error in zip(witnesses, errors, strict=True)]
+        alike, changed = sum(found for found, _ in seen), sum(moved for _, moved in seen)
+        places.append(Place(term_of(probe), probe, alike, wrong, changed))
+    return places
+
+
+def _error(witness: Witness) -> Change:
+    """What is too much in each pixel, and which pixels are outside their bounds."""
     lawful = witness.lawful(())
     got = witness.got.values[0]
     outside = ((got < lawful.low[0]) | (got > lawful.high[0])).any(axis=-1)
     return got - lawful.middle[0], outside
 
 
-def _likeness(readings: Sequence[tuple[Witness, tuple[NDArray[np.float64], NDArray[np.bool_]]]], fault: Fault) -> float:
-    """Ochiai's similarity of wrong and changed pictures, each pair weighed by that of their pixels and colours."""
-    alike, wrong, changed = 0.0, 0, 0
-    for witness, (error, outside) in readings:
-        change, moved = witness.change(fault)
-        wrong += bool(outside.any())
-        changed += bool(moved.any())
-        both = outside & moved
-        if both.any():
-            ochiai = np.count_nonzero(both) / sqrt(np.count_nonzero(outside) * np.count_nonzero(moved))
-            alike += ochiai * _parallel(error[both], change[both])
-    return alike / sqrt(wrong * changed) if alike else 0.0
+def _alike(error: Change, change: Change) -> tuple[float, bool]:
+    """How alike both are in one picture, pixels and colours, 0 to 1; whether the probe changes it at all."""
+    outside, moved = error[1], change[1]
+    both = outside & moved
+    if not both.any():
+        return 0.0, bool(moved.any())
+    ochiai = np.count_nonzero(both) / sqrt(np.count_nonzero(outside) * np.count_nonzero(moved))
+    return ochiai * _parallel(error[0][both], change[0][both]), True
 
 
 def _parallel(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
