@@ -202,7 +202,8 @@ class Located(Frozen):
     """Where an error lives that no known fault explains.
 
     term: of the shading sum; formula: as it should be; likeness: how alike its pictures are to those of the fault
-    `like`, 0 to 1; laws: those of the term's formulas that the tracer's own answers break.
+    `like`, 0 to 1; second: the next likely term; laws: those of the term's formulas that the tracer's own answers
+    break.
     """
 
     term: str
@@ -210,6 +211,7 @@ class Located(Frozen):
     slide: str
     likeness: float
     like: str
+    second: str = ""
     laws: tuple[str, ...] = ()
 
 

@@ -94,20 +94,21 @@ def _named(evidence: Evidence, best: Standing, alone: Sequence[Standing]) -> Dia
 def _likely(evidence: Evidence, best: Standing, alone: Sequence[Standing], place: Located) -> Diagnosis:
     names = " and ".join(fault.name for fault in best.faults)
     says = (
-        f"The nearest known to the tracer's error is {names}: it explains {best.wrong_explained} of "
-        f"{_pictures(len(evidence.failing), 'wrong picture')}, so there is another fault besides, or another that "
-        f"looks alike there. The wrong pictures as a whole look like an error of the term {place.term}."
+        f"Most like the known {names}, which explains {best.wrong_explained} of "
+        f"{_pictures(len(evidence.failing), 'wrong picture')}: either there is another fault besides, or it is another "
+        f"that looks alike there. As a whole the wrong pictures look like an error of the {_terms(place)}."
     )
     return _diagnosis(evidence, best, alone, kind="likely", sentence=says, located=place)
 
 
 def _unknown(evidence: Evidence, alone: Sequence[Standing], place: Located) -> Diagnosis:
     pictures = _pictures(len(evidence.failing), "wrong picture")
-    says = (
-        f"No known fault explains any of the tracer's {pictures}. "
-        f"They look like an error of the term {place.term}: {place.formula}."
-    )
+    says = f"No known fault explains any of the tracer's {pictures}. They look like an error of the {_terms(place)}."
     return _diagnosis(evidence, standing(evidence, ()), alone, kind="unknown", sentence=says, located=place)
+
+
+def _terms(place: Located) -> str:
+    return f"term {place.term}" + (f", or else {place.second}" if place.second else "")
 
 
 def _diagnosis(evidence: Evidence, best: Standing, alone: Sequence[Standing], **told: Any) -> Diagnosis:
@@ -157,15 +158,15 @@ def _suspect(found: Standing) -> Suspect:
 
 def _place(places: Sequence[Place], answers: Answers) -> Located:
     """The likeliest term; one whose formula is known to answer wrongly goes before all others."""
-    accused = [place for place in places if _broken(place, answers)]
-    place = (accused or list(places))[0]
-    term = place.term
+    ordered = sorted(places, key=lambda place: not _broken(place, answers))
+    place, second = ordered[0], ordered[1]
     return Located(
-        term=term.name,
-        formula=term.formula,
-        slide=term.slide,
+        term=place.term.name,
+        formula=place.term.formula,
+        slide=place.term.slide,
         likeness=place.likeness,
         like=place.like.name,
+        second="" if _broken(place, answers) else second.term.name,
         laws=_broken(place, answers),
     )
 

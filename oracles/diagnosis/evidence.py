@@ -100,14 +100,22 @@ class Witness:
 
     def lawful(self, faults: Sequence[Fault]) -> Bounds:
         """What the pixels looked at may be if the tracer has these faults, (1, n, 3)."""
+        with np.errstate(all="ignore"):  # a wrong formula may give anything
+            return self._lawful(faults)
+
+    def _lawful(self, faults: Sequence[Fault]) -> Bounds:
         rules = composed(self.base, faults)
         write = next((fault.picture for fault in faults if fault.picture), None)
         if write is not None:
             return self._written(write, rules if any(fault.entries for fault in faults) else None)
         if not faults:
-            truth = self.exhibit.declared
-            return self._bounds(self._flat(truth.pixels), self._flat(truth.tolerance))
+            return self._right
         return self._bounds(render_pixels(self.scene, self.pixels, rules))
+
+    @cached_property
+    def _right(self) -> Bounds:
+        truth = self.exhibit.declared
+        return self._bounds(self._flat(truth.pixels), self._flat(truth.tolerance))
 
     def change(self, fault: Fault) -> tuple[Reals, NDArray[np.bool_]]:
         """How far a fault moves each pixel, (n, 3), and which pixels it moves out of their bounds."""
@@ -115,7 +123,8 @@ class Witness:
             return np.zeros((self.pixels.size, 3)), np.zeros(self.pixels.size, dtype=bool)
         right, wrong = self.lawful(()), self.lawful((fault,)).middle
         outside = (wrong < right.low) | (wrong > right.high)
-        return np.nan_to_num(wrong - right.middle)[0], np.any(outside[0], axis=-1)
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(wrong - right.middle)[0], np.any(outside[0], axis=-1)
 
     def whole(self, faults: Sequence[Fault]) -> Reading:
         """The picture at all its clear pixels, if the tracer has these faults."""
@@ -148,11 +157,8 @@ class Witness:
     def _bounds(self, linear: Reals, reach: Reals | None = None) -> Bounds:
         truth = self.exhibit.declared
         doubts = np.zeros(linear.shape[:2], dtype=np.int64)
-        with np.errstate(invalid="ignore", over="ignore"):
-            expected = Truth(
-                self.scene, truth.precision, linear, self._reach if reach is None else reach, doubts, truth.transfer
-            )
-            return bounds(self.got, expected)
+        far = self._reach if reach is None else reach
+        return bounds(self.got, Truth(self.scene, truth.precision, linear, far, doubts, truth.transfer))
 
     @cached_property
     def _reach(self) -> Reals:

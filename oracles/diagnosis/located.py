@@ -79,7 +79,13 @@ TERMS = (
     ),
     _term("ambient", "ambient_light", "RGB = ambient + diffuse·cosθ", "uRT-10-RT5-Colors-Ambient_diffuse"),
     _term("diffuse", "lambert", "cosθ = max(i∘n, 0)", "Ex) Bad and Good Case", "phong"),
-    _term("specular", "phong reflect view_vector", "r = 2(i∘n)n - i; specular·max(r∘(-v), 0)^s", "Phong's effect Result", "phong"),
+    _term(
+        "specular",
+        "phong reflect view_vector",
+        "r = 2(i∘n)n - i; specular·max(r∘(-v), 0)^s",
+        "Phong's effect Result",
+        "phong",
+    ),
     _term(
         "visibility",
         "blocks shaded_light",
@@ -207,7 +213,7 @@ def _alike(error: Change, change: Change) -> tuple[float, bool]:
 
 def _parallel(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     """Mean |cosine| between colours."""
-    lengths = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
-    with np.errstate(invalid="ignore", divide="ignore"):
+    with np.errstate(all="ignore"):
+        lengths = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
         cosines = np.abs((a * b).sum(axis=-1)) / lengths
     return float(np.nan_to_num(cosines).mean())

@@ -121,13 +121,13 @@ def _cubed(i, n):
     return cosine * cosine * cosine
 
 
-def _refracted_too_far(v, n, leaving, index):
-    return optics.refract(v, n, leaving, index * index)
+def _half_bent(v, n, leaving, index):
+    return optics.refract(v, n, leaving, (index + 1.0) * 0.5)
 
 
 @pytest.mark.parametrize(
     ("entry", "wrong", "term"),
-    [("lambert", _cubed, "diffuse"), ("refract", _refracted_too_far, "refracted")],
+    [("lambert", _cubed, "diffuse"), ("refract", _half_bent, "refracted")],
 )
 def test_a_fault_that_is_not_known_is_not_named_but_located(entry: str, wrong, term: str) -> None:
     assert not any(getattr(f.rules, entry) is wrong for f in FAULTS)
@@ -156,7 +156,7 @@ def test_answers_speak_where_no_picture_does() -> None:
 
 
 def test_a_formula_that_answers_wrongly_is_where_the_error_is_sought() -> None:
-    shown = exhibits(instead("unknown", refract=_refracted_too_far))
+    shown = exhibits(instead("unknown", refract=_half_bent))
     found = diagnose(shown, answers=Answers({"reflect": ("law/reflect/angle",)}, frozenset()))
     assert found
     assert found.located
