@@ -21,6 +21,8 @@ from oracles.inference import Exhibit
 from oracles.verdict import Diagnosis, Located, Suspect
 from reference_tracer.rulebook import LECTURE, Rulebook
 
+SURE = 3
+"""Faults named with confidence; more could explain much by chance."""
 OTHERS = 3
 """Next best faults told."""
 
@@ -72,8 +74,8 @@ def predicted(exhibit: Exhibit, faults: Sequence[Fault], base: Rulebook = LECTUR
 
 
 def _holds(evidence: Evidence, best: Standing) -> bool:
-    """Whether the faults explain every picture, at all of its clear pixels."""
-    if best.right < len(evidence.witnesses):
+    """Whether the faults, few enough, explain every picture, at all of its clear pixels."""
+    if best.right < len(evidence.witnesses) or len(best.faults) > SURE:
         return False
     return all(witness.whole(best.faults).right for witness in evidence.failing)
 

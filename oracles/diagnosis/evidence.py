@@ -31,6 +31,11 @@ Not all: a tracer's own rounding decides differently on outlines that a fault ha
 REMAINS = 1 / 8
 """Of a wrong value's error, the most that may remain where a fault explains it."""
 
+STRETCH = 256.0
+"""A wrong way to write makes errors larger by this at most: a float that should have been one of 0 to 1."""
+ROOM = 2**26
+"""Bytes of whole pictures kept for each scene."""
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -76,6 +81,7 @@ class Witness:
         self.pixels = exhibit.pixels() if pixels is None else pixels
         self.got = replace(exhibit.picture, values=self._flat(exhibit.picture.values))
         self.kept: dict[Rulebook, Reals] = {}
+        self.alone: dict[Written, bool] = {}
         self.failing = bool(exhibit.wrong.ravel()[self.pixels].any())
 
     @property
@@ -115,7 +121,7 @@ class Witness:
     @cached_property
     def _right(self) -> Bounds:
         truth = self.exhibit.declared
-        return self._bounds(self._flat(truth.pixels), self._flat(truth.tolerance))
+        return self._bounds(self._flat(truth.pixels), self._tolerance)
 
     def change(self, fault: Fault) -> tuple[Reals, NDArray[np.bool_]]:
         """How far a fault moves each pixel, (n, 3), and which pixels it moves out of their bounds."""
@@ -126,54 +132,92 @@ class Witness:
         with np.errstate(all="ignore"):
             return np.nan_to_num(wrong - right.middle)[0], np.any(outside[0], axis=-1)
 
+    def writes(self, fault: Fault) -> bool:
+        """Whether the fault is one of writing files of this picture's form."""
+        form = fault.picture(self.exhibit.declared.pixels, self.scene) if fault.picture else None
+        return form is not None and form.maximum == self.got.maximum
+
     def whole(self, faults: Sequence[Fault]) -> Reading:
         """The picture at all its clear pixels, if the tracer has these faults."""
         return Witness(self.exhibit, self.base, self.exhibit.clear()).read(faults)
 
     def _written(self, write: Written, rules: Rulebook | None) -> Bounds:
-        """By the whole picture: a wrong way to write a file may move pixels."""
-        linear = self.exhibit.declared.pixels if rules is None else self._rendered(rules)
+        """What stands in the file; by the whole picture, unless each pixel is written by itself."""
+        pointwise = self._pointwise(write)
+        if rules is None:
+            whole = self.exhibit.declared.pixels
+            linear = self._flat(whole) if pointwise else whole
+        else:
+            linear = render_pixels(self.scene, self.pixels, rules) if pointwise else self._rendered(rules)
         reach = self.exhibit.reach
         pictures = [write(pixels, self.scene) for pixels in (linear - reach, linear, linear + reach)]
-        low, middle, high = (self._flat(picture.values) for picture in pictures)
+        low, middle, high = (picture.values if pointwise else self._flat(picture.values) for picture in pictures)
         if pictures[1].maximum is None:
             moved = np.maximum(np.abs(high - middle), np.abs(middle - low))  # a wrong way to write may stretch errors
-            return self._bounds(middle, np.maximum(self._reach, np.nan_to_num(moved)))
+            return self._bounds(middle, self._reach(np.nan_to_num(moved)))
         if pictures[1].maximum != self.got.maximum:
             return self.lawful(())  # another form of file than the tracer writes
-        both = np.minimum(low, high), np.maximum(low, high)
-        return Bounds(np.minimum(both[0], middle), np.maximum(both[1], middle), middle, "code")
+        return self._codes(np.stack([low, middle, high]))
+
+    def _pointwise(self, write: Written) -> bool:
+        """Whether what is written of a pixel depends on that pixel alone, as far as the right picture shows."""
+        if write not in self.alone:
+            whole = self.exhibit.declared.pixels
+            some, all_ = write(self._flat(whole), self.scene), write(whole, self.scene)
+            self.alone[write] = np.array_equal(some.values, self._flat(all_.values))
+        return self.alone[write]
+
+    def _codes(self, codes: Reals) -> Bounds:
+        """Of the codes that the lower end, the middle and the upper end of a value become, and all between neighbours.
+
+        Where a byte wraps around, the ends are far apart, and nothing between them is lawful.
+        """
+        low, middle, high = codes.min(axis=0), codes[1], codes.max(axis=0)
+        nearest = np.take_along_axis(codes, np.abs(codes - self.got.values).argmin(axis=0)[None], axis=0)[0]
+        wraps = high - low > self.got.maximum / 2 if self.got.maximum else np.zeros(low.shape, dtype=bool)
+        return Bounds(np.where(wraps, nearest, low), np.where(wraps, nearest, high), middle, "code")
 
     def _flat(self, picture: Reals) -> Reals:
         """The pixels looked at, (1, n, 3)."""
         return picture.reshape(1, -1, 3)[:, self.pixels]
 
     def _rendered(self, rules: Rulebook) -> Reals:
-        """The whole picture; kept for the next way of writing it."""
+        """The whole picture; kept, while there is room, for the next way of writing it."""
         if rules not in self.kept:
-            self.kept = {rules: rendered(self.scene, rules)}
+            found = rendered(self.scene, rules)
+            if len(self.kept) >= max(1, ROOM // found.nbytes):
+                self.kept.clear()
+            self.kept[rules] = found
         return self.kept[rules]
 
     def _bounds(self, linear: Reals, reach: Reals | None = None) -> Bounds:
         truth = self.exhibit.declared
         doubts = np.zeros(linear.shape[:2], dtype=np.int64)
-        far = self._reach if reach is None else reach
+        far = self._reach() if reach is None else reach
         return bounds(self.got, Truth(self.scene, truth.precision, linear, far, doubts, truth.transfer))
 
-    @cached_property
-    def _reach(self) -> Reals:
-        """How far from what is predicted a value may lie, (1, n, 3).
+    def _reach(self, moved: Reals | None = None) -> Reals:
+        """How far from what is predicted a value may lie, (1, n, 3); moved: what its tolerance becomes in the file.
 
         Tolerances are proven for the right formulas only; a wrong one may take another path, so what 99 % of the
         pixels keep is granted to all. But where the picture is wrong, no more than a part of the error may remain.
         """
-        truth = self.exhibit.declared
-        lawful = self.lawful(())
-        got = self.got.values
+        granted = self.exhibit.reach
+        if moved is None:
+            return np.maximum(self._tolerance, np.minimum(self._remains, granted))
+        stretched = np.clip(moved, granted, STRETCH * granted)
+        return np.maximum(self._tolerance, np.minimum(self._remains, stretched))
+
+    @cached_property
+    def _tolerance(self) -> Reals:
+        return self._flat(self.exhibit.declared.tolerance)
+
+    @cached_property
+    def _remains(self) -> Reals:
+        """The part of each value's error that may remain, inf where there is none."""
+        lawful, got = self._right, self.got.values
         error = np.maximum(np.maximum(lawful.low - got, got - lawful.high), 0.0) / (self.got.maximum or 1.0)
-        remains = np.where(error > 0.0, error * REMAINS, np.inf)
-        found: Reals = np.maximum(self._flat(truth.tolerance), np.minimum(remains, self.exhibit.reach))
-        return found
+        return np.where(error > 0.0, error * REMAINS, np.inf)
 
     def _reading(self, lawful: Bounds) -> Reading:
         got = self.got.values

@@ -15,12 +15,14 @@ import numpy as np
 from oracles.diagnosis.evidence import Evidence, Reading, Witness, composable
 from oracles.faults import FAULTS, Fault
 
-MOST = 3
-"""Faults named together; more would explain anything."""
+MOST = 5
+"""Faults named together."""
 SAMPLE = 6
 """Wrong pictures, from the simplest scene to the richest, on which every fault is tried alone."""
 KEPT = 16
 """Faults that are tried on all pictures, and to which a further one is sought."""
+FOLLOWED = 4
+"""Sets of faults to which a further one is sought."""
 BRANCHES = 6
 """Further faults that are tried on all pictures, for each set of faults."""
 CLUES = 2
@@ -79,20 +81,27 @@ def _explains(witness: Witness, reading: Reading) -> bool:
 
 def explained(evidence: Evidence, told: Told = lambda words: None) -> tuple[Standing, list[Standing]]:
     """The best set of at most MOST faults, empty where none helps, and the best ones alone, in order."""
-    faults = [fault for fault in FAULTS if fault.fate != "equivalent"]
+    faults = FAULTS  # those that change nothing by themselves too: they may beside another
     alone = _best_first(standing(evidence, (fault,)) for fault in _promising(evidence, faults))
     nothing = standing(evidence, ())
     best = alone[0] if alone and alone[0].key[:2] > nothing.key[:2] else nothing
-    starts = alone
+    # What a wrong way to write shows may need another fault to be seen at all: a negative colour that wraps around
+    starts = [*alone, *(standing(evidence, (fault,)) for fault in _writers(evidence, faults, alone))]
     for count in range(2, MOST + 1):
         if best.right == len(evidence.witnesses):
             break
         told(f"looking for {count} faults together")
-        starts = _best_first(_extended(evidence, starts, faults))[:KEPT]
+        starts = _best_first(_extended(evidence, starts, faults))[:FOLLOWED]
         if not starts or not _further(starts[0], best):
             break
         best = starts[0]
     return _needed(evidence, best), alone
+
+
+def _writers(evidence: Evidence, faults: Sequence[Fault], alone: Sequence[Standing]) -> list[Fault]:
+    """Faults of writing such files as these pictures are, those aside that are among the best already."""
+    best = {found.faults[0].name for found in alone}
+    return [f for f in faults if f.name not in best and any(w.writes(f) for w in evidence.failing[:1])]
 
 
 def _further(more: Standing, less: Standing) -> bool:

@@ -34,6 +34,14 @@ def _encoded(pixels: Reals) -> Reals:
     return np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1.0 / 2.4) - 0.055)
 
 
+def _cut_above(pixels: Reals, scene: Scene) -> Reals:
+    """Codes of which only those above 255 are cut: a negative one loses its fraction and wraps around."""
+    if scene.display == "srgb":
+        negative = 255.0 * 12.92 * pixels + 0.5
+        return np.where(pixels < 0.0, np.mod(np.trunc(negative), 256.0), srgb_codes(pixels))
+    return np.mod(np.trunc(np.minimum(255.0 * pixels, 255.0)), 256.0)
+
+
 def _slanted(pixels: Reals) -> Reals:
     """Rows that begin one pixel later each, as with a padded row length."""
     return np.stack([np.roll(row, j, axis=0) for j, row in enumerate(pixels)])
@@ -218,6 +226,18 @@ FAULTS = (
         "bright spots turn dark, dark ones bright",
         "clamp both ways before the cast",
         _bytes(lambda p: np.mod(np.floor(255.0 * p), 256.0)),
+    ),
+    Fault(
+        "byte-clamped-above-only",
+        "picture",
+        f'L11 "{_BAD}"',
+        "code = (unsigned char)(int)min(255*c, 255);",
+        _BYTE,
+        "what is darker than black turns bright",
+        "clamp both ways before the cast; and a cosine before it is used",
+        picture=lambda pixels, scene: Picture(_cut_above(pixels.astype(np.float64), scene), 255),
+        fate="equivalent",
+        reason="Right formulas give no negative colour: it shows only beside another mistake, as cosine-not-clamped.",
     ),
     _fault(
         "byte-rounded",
