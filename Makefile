@@ -29,6 +29,9 @@ bench: $(READY)
 	$(BIN)/python -P benchmarks/laws_table.py
 	$(BIN)/python -P benchmarks/peers.py
 	$(BIN)/python -P benchmarks/diagnosis.py
+	$(BIN)/python -P benchmarks/private_faults.py
+	$(BIN)/python -P benchmarks/located.py
+	$(BIN)/python -P benchmarks/gates.py
 	$(BIN)/python -P benchmarks/shrinking.py
 	$(BIN)/python -P benchmarks/stochastic_gate.py
 	$(BIN)/python -P benchmarks/grading.py
