@@ -77,7 +77,8 @@ class GroupScore(Frozen):
     def sum_in_words(self) -> str:
         """How the points came about."""
         if self.charges:
-            return f"{len(self.lines) or 'none'} explained what was wrong: {_points(self.earned)}"
+            once = f"{len(self.lines)} charged, once for all that it broke" if self.lines else "none charged"
+            return f"{once}: {_points(self.earned)}"
         if self.left_out:
             return "left out: not asked of this tracer"
         excused = len(self.lines) - self.counted

@@ -105,4 +105,4 @@ def test_what_no_fault_explains_is_charged_as_ever() -> None:
 
 def test_a_right_tracer_has_no_mistakes() -> None:
     group, known = with_mistakes(8)
-    assert (group.earned, known.earned, known.sum_in_words) == (10.0, 0.0, "none explained what was wrong: 0")
+    assert (group.earned, known.earned, known.sum_in_words) == (10.0, 0.0, "none charged: 0")
