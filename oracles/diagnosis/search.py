@@ -85,7 +85,7 @@ def explained(evidence: Evidence, told: Told = lambda words: None) -> tuple[Stan
     alone = _best_first(standing(evidence, (fault,)) for fault in _promising(evidence, faults))
     nothing = standing(evidence, ())
     best = alone[0] if alone and alone[0].key[:2] > nothing.key[:2] else nothing
-    # What a wrong way to write shows may need another fault to be seen at all: a negative colour that wraps around
+    # Codes hide: a wrong way to write them may be seen only beside another fault, as a negative colour that wraps
     starts = [*alone, *(standing(evidence, (fault,)) for fault in _writers(evidence, faults, alone))]
     for count in range(2, MOST + 1):
         if best.right == len(evidence.witnesses):
@@ -99,9 +99,10 @@ def explained(evidence: Evidence, told: Told = lambda words: None) -> tuple[Stan
 
 
 def _writers(evidence: Evidence, faults: Sequence[Fault], alone: Sequence[Standing]) -> list[Fault]:
-    """Faults of writing such files as these pictures are, those aside that are among the best already."""
+    """Faults of writing codes, if these pictures are of codes, those aside that are among the best already."""
     best = {found.faults[0].name for found in alone}
-    return [f for f in faults if f.name not in best and any(w.writes(f) for w in evidence.failing[:1])]
+    coded = [witness for witness in evidence.failing[:1] if witness.got.maximum is not None]
+    return [fault for fault in faults if fault.name not in best and any(w.writes(fault) for w in coded)]
 
 
 def _further(more: Standing, less: Standing) -> bool:
