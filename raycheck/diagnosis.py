@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from oracles.conventions import Convention
 from oracles.diagnosis import Answers, diagnose, predicted
 from oracles.faults import fault
@@ -43,6 +45,7 @@ def explained(
     found = diagnose(wanted, base, answers(verdicts), told)
     if found is None:
         return None
+    found = _shown(found, exhibits, verdicts)
     repeat = next((v.reproduce for v in verdicts if v.check == found.check), "")
     picture = None
     if found.faults and found.check:
@@ -51,6 +54,16 @@ def explained(
         (folder / PICTURE).write_bytes(png_bytes(encode(pixels, exhibit.scene.display)))
         picture = PICTURE
     return found.model_copy(update={"reproduce": repeat, "picture": picture})
+
+
+def _shown(found: Diagnosis, exhibits: Mapping[str, Exhibit], verdicts: Sequence[Verdict]) -> Diagnosis:
+    """By the first picture that failed, where what was found shows in one that the report lacks, being blocked."""
+    failed = [v.check for v in verdicts if v.verdict == "fail" and v.check.removeprefix("image/") in exhibits]
+    if not found.check or found.check in failed or not failed:
+        return found
+    wrong = exhibits[failed[0].removeprefix("image/")].wrong
+    j, i = (int(k) for k in np.argwhere(wrong)[0])
+    return found.model_copy(update={"check": failed[0], "pixel": (i, j)})
 
 
 def answers(verdicts: Sequence[Verdict]) -> Answers:
