@@ -116,11 +116,6 @@ FIRST = (
     ),
     Private("the cosine is not bent", "refracted", ((_BENT, "t = unit(s + n * dot(v, n));"),)),
     Private(
-        "the index enters twice",
-        "refracted",
-        (("leaving ? p * index : p * (1 / index)", "leaving ? p * (index * index) : p * (1 / (index * index))"),),
-    ),
-    Private(
         "the mirror's weight enters twice", "branches", ((_MIRRORED, _MIRRORED.replace("keep", "m.reflect * keep")),)
     ),
     Private(
