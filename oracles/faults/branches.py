@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from oracles.faults.fault import Fate, Fault, instead
+from oracles.faults.fault import maker
 from reference_tracer import rulebook
 from reference_tracer.formulas import optics
 from reference_tracer.numbers import Condition, less, select
@@ -46,13 +46,8 @@ def _passes_the_rest(reflect: Vec, transmit: Vec, total: Condition, asked: bool,
     return rulebook.weights(reflect, rest, total, asked, share)
 
 
-_PHONG = "Phong Effect"
-_RESULT = "Phong's effect Result"
 _MIRROR = "Mirror with No Transparency"
-_MATH = "Math of Reflection Vector"
 
-_BEND = "Refraction Vector Calculation"
-_CODE = "Get Refraction Vector"
 _TR = "Refraction with geo.tr vector"
 
 _NOTHING = "Nothing to meet"
@@ -60,32 +55,9 @@ _THREE = "Ray Tracing has three features"
 
 _SUM = "c = local + reflect*find_rgb(p, r) + transmit*find_rgb(p, t);"
 
-_BORN = "Born & Wolf, Principles of Optics, 1.5.2"
 
-
-def _make(group: str) -> Any:
-    def entry(
-        name: str,
-        source: str,
-        wrong: str,
-        right: str,
-        seen: str,
-        mend: str,
-        fate: Fate = "killed",
-        reason: str = "",
-        **entries: Any,
-    ) -> Fault:
-        said = source if source == _BORN else f'L11 "{source}"'
-        return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
-
-    return entry
-
-
-_phong = _make("highlight")
-_mirror = _make("mirror")
-_glass = _make("glass")
-_mix = _make("branches")
-_depth = _make("recursion")
+_mix = maker("branches")
+_depth = maker("recursion")
 
 FAULTS = (
     _mix(

@@ -73,3 +73,26 @@ def changed(rules: Rulebook) -> frozenset[str]:
 def instead(name: str, **entries: Any) -> Rulebook:
     """The lecture's rulebook with these entries in the place of its own."""
     return replace(LECTURE, name=name, **entries)
+
+
+def maker(group: str, *cited: str) -> Callable[..., Fault]:
+    """What makes the entries of a group: by name, source, wrong and right line, what is seen, and where to mend it.
+
+    The source is a slide of L11, unless it is one of those cited in full.
+    """
+
+    def entry(
+        name: str,
+        source: str,
+        wrong: str,
+        right: str,
+        seen: str,
+        mend: str,
+        fate: Fate = "killed",
+        reason: str = "",
+        **entries: Any,
+    ) -> Fault:
+        said = source if source in cited else f'L11 "{source}"'
+        return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
+
+    return entry

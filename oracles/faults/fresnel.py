@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from oracles.faults.fault import Fate, Fault, instead
+from oracles.faults.fault import maker
 from reference_tracer import rulebook
 from reference_tracer.formulas import optics
 from reference_tracer.numbers import Condition, Number, less, power, select, sqrt0
@@ -68,40 +68,15 @@ def _weighed(kept: Any) -> Any:
     return weights
 
 
-_BEND = "Refraction Vector Calculation"
-_CODE = "Get Refraction Vector"
 _TR = "Refraction with geo.tr vector"
 
-_T = "t = p_u*s2 - n*sqrt(1 - s2*s2);"
 _F = "F = (r_s*r_s + r_p*r_p)/2;"
 
 _BORN = "Born & Wolf, Principles of Optics, 1.5.2"
 _SCHLICK = "Schlick, An Inexpensive BRDF Model for Physically-based Rendering, 1994"
 
 
-def _make(group: str) -> Any:
-    def entry(
-        name: str,
-        source: str,
-        wrong: str,
-        right: str,
-        seen: str,
-        mend: str,
-        fate: Fate = "killed",
-        reason: str = "",
-        **entries: Any,
-    ) -> Fault:
-        said = source if source in (_BORN, _SCHLICK) else f'L11 "{source}"'
-        return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
-
-    return entry
-
-
-_phong = _make("highlight")
-_mirror = _make("mirror")
-_glass = _make("glass")
-_mix = _make("branches")
-_depth = _make("recursion")
+_glass = maker("glass", _BORN, _SCHLICK)
 
 FAULTS = (
     _glass(

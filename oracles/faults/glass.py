@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from oracles.faults.fault import Fate, Fault, instead
+from oracles.faults.fault import maker
 from reference_tracer.formulas import optics
 from reference_tracer.methods import REFRACT
 from reference_tracer.numbers import Condition, at_least, less, select, sqrt0
@@ -88,41 +88,13 @@ def _total_on_entering(v: Vec, n: Vec, leaving: Any, index: Any) -> Bent:
 
 _BEND = "Refraction Vector Calculation"
 _CODE = "Get Refraction Vector"
-_TR = "Refraction with geo.tr vector"
 
-_S = "gloss = pow(max(dot(r, -v), 0), s);"
-_R = "r = 2*dot(i, n)*n - i;"
 _RATIO = "s2 = leaving ? s1*index : s1/index;"
 
 _T = "t = p_u*s2 - n*sqrt(1 - s2*s2);"
-_F = "F = (r_s*r_s + r_p*r_p)/2;"
-
-_BORN = "Born & Wolf, Principles of Optics, 1.5.2"
 
 
-def _make(group: str) -> Any:
-    def entry(
-        name: str,
-        source: str,
-        wrong: str,
-        right: str,
-        seen: str,
-        mend: str,
-        fate: Fate = "killed",
-        reason: str = "",
-        **entries: Any,
-    ) -> Fault:
-        said = source if source == _BORN else f'L11 "{source}"'
-        return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
-
-    return entry
-
-
-_phong = _make("highlight")
-_mirror = _make("mirror")
-_glass = _make("glass")
-_mix = _make("branches")
-_depth = _make("recursion")
+_glass = maker("glass")
 
 FAULTS = (
     _glass(

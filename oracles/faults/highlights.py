@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from oracles.faults.fault import Fate, Fault, instead
+from oracles.faults.fault import maker
 from reference_tracer.formulas import optics, shading
 from reference_tracer.numbers import Number, clamp0, less, power, select
 from reference_tracer.vector import Vec, dot, unit
@@ -49,34 +49,10 @@ _MATH = "Math of Reflection Vector"
 
 _S = "gloss = pow(max(dot(r, -v), 0), s);"
 _R = "r = 2*dot(i, n)*n - i;"
-_RATIO = "s2 = leaving ? s1*index : s1/index;"
-
-_BORN = "Born & Wolf, Principles of Optics, 1.5.2"
 
 
-def _make(group: str) -> Any:
-    def entry(
-        name: str,
-        source: str,
-        wrong: str,
-        right: str,
-        seen: str,
-        mend: str,
-        fate: Fate = "killed",
-        reason: str = "",
-        **entries: Any,
-    ) -> Fault:
-        said = source if source == _BORN else f'L11 "{source}"'
-        return Fault(name, group, said, wrong, right, seen, mend, instead(name, **entries), None, fate, reason)
-
-    return entry
-
-
-_phong = _make("highlight")
-_mirror = _make("mirror")
-_glass = _make("glass")
-_mix = _make("branches")
-_depth = _make("recursion")
+_phong = maker("highlight")
+_mirror = maker("mirror")
 
 FAULTS = (
     _phong(

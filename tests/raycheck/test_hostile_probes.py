@@ -50,6 +50,8 @@ with open(sys.argv[2], "wb") as f:
     f.write(b"PF\\n%d %d\\n-1.0\\n" % (width, height))
     f.write(struct.pack("<3f", *[float(w) for w in words["background"]]) * (width * height))
 """
+PRIVATE = (str(Path.home() / ".bashrc"), "/home", __file__, "/etc/shadow")
+"""What a submission has no business to see: the grader's home, other homes, the suite, passwords."""
 EATS = "x = []\nwhile True: x.append(bytearray(b'x') * 10**7)"
 ATTACKS = {
     "none": ("greet(); answer()", "pass", ""),
@@ -76,7 +78,7 @@ ATTACKS = {
     ),
     "dies of a signal": ("greet(); sys.stdin.readline(); os.kill(os.getpid(), 11)", "crash", "SIGSEGV"),
     "looks around": (
-        "found = [p for p in ('/root/.bashrc', '/home', '/work', '/etc/shadow') if os.path.exists(p)]\n"
+        f"found = [p for p in {PRIVATE} if os.path.exists(p)]\n"
         "try: socket.create_connection(('1.1.1.1', 53), 1); found.append('network')\nexcept OSError: pass\n"
         "for p in (__file__, '/usr/x', '/dev/x'):\n"
         "    try: open(p, 'a'); found.append(p)\n    except OSError: pass\n"
