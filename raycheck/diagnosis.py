@@ -50,8 +50,10 @@ def explained(
     picture = None
     if found.faults and found.check:
         exhibit = exhibits[found.check.removeprefix("image/")]
-        pixels = predicted(exhibit, [fault(suspect.name) for suspect in found.faults], base)
-        (folder / PICTURE).write_bytes(png_bytes(encode(pixels, exhibit.scene.display)))
+        written = predicted(exhibit, [fault(suspect.name) for suspect in found.faults], base)
+        linear = written.maximum is None
+        codes = encode(written.values, exhibit.scene.display) if linear else written.values.astype(np.int64)
+        (folder / PICTURE).write_bytes(png_bytes(codes))
         picture = PICTURE
     return found.model_copy(update={"reproduce": repeat, "picture": picture})
 

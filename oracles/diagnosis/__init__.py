@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from oracles.diagnosis.evidence import Evidence, Witness, composed, rendered
 from oracles.diagnosis.located import TERMS, Place, located
 from oracles.diagnosis.search import Standing, explained, standing
 from oracles.faults import Fault
+from oracles.images import Picture
 from oracles.inference import Exhibit
 from oracles.verdict import Diagnosis, Located, Suspect
 from reference_tracer.rulebook import LECTURE, Rulebook
@@ -68,9 +68,11 @@ def disturbs(known: Fault, operation: str) -> bool:
     return any(known.entries & term.entries for term in TERMS if operation in term.probes)
 
 
-def predicted(exhibit: Exhibit, faults: Sequence[Fault], base: Rulebook = LECTURE) -> NDArray[np.float64]:
-    """What the faults make of the scene, (height, width, 3): linear, before it is written to a file."""
-    return rendered(exhibit.scene, composed(base, faults))
+def predicted(exhibit: Exhibit, faults: Sequence[Fault], base: Rulebook = LECTURE) -> Picture:
+    """What a tracer with these faults would write of the scene."""
+    pixels = rendered(exhibit.scene, composed(base, faults))
+    write = next((fault.picture for fault in faults if fault.picture), None)
+    return write(pixels, exhibit.scene) if write else Picture(pixels)
 
 
 def _holds(evidence: Evidence, best: Standing) -> bool:
